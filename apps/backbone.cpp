@@ -46,6 +46,7 @@ int run_backbone(const Values& values) {
   return deliver(values, [&] {
     PreparedRecord prepared = read_and_prepare(request.file, request.format);
     prepared.record = made_analysable(prepared.record);
+    if (request.format.channels.empty()) put_strongest_first(prepared.record);
     try {
       prepared.record = complete_part(motion_of(prepared.record), prepared.record.remarks);
       if (!request.format.window) prepared.record = from_release(prepared.record, prepared.record.remarks);

@@ -28,8 +28,8 @@ OptionGroup steps_options() {
       {config_option("experiment file: beam, columns, units, window, filter (docs/configuration.md)"),
        from_to("window", "part of the record to use [s], instead of the experiment file's"),
        discretisation_option(
-           "to be compared with the exact one, exponential; without any, the experiment file's, or "
-           "forward_euler (beamid list discretisations)")
+           "discretisation to compare with `exponential` [that of the experiment file, or forward_euler] "
+           "(beamid list discretisations)")
            .repeated(),
        whole("steps", "N", 1, 8,
              "how many: dt, 2 dt, 4 dt, ...; without it, as long as 8 samples a period and 100 in all "

@@ -45,6 +45,7 @@ int run_track(const Values& values) {
   return deliver(values, [&] {
     PreparedRecord prepared = read_and_prepare(request.file, request.format);
     prepared.record = made_analysable(prepared.record);
+    if (request.format.channels.empty()) put_strongest_first(prepared.record);
     const Record& record = prepared.record;
     const std::string file = request.file.string();
     const std::vector<Eigen::Index> outputs = output_channels(record);

@@ -88,8 +88,9 @@ Descent descend(OutputError& error, const VectorXd& start, Index samples, double
     }
     ++result.passes;
     const double fall = pass.finite ? result.last.cost - pass.cost : -1.0;
-    const double unseen = converged ? rounding * result.last.cost : 0.0;  // the last step may change less
-    if (!pass.finite || !(fall > -unseen)) return TriedStep{0.0, converged};
+    const bool is_last = converged || predicted < rounding * result.last.cost;  // which rounding hides
+    const double unseen = is_last ? rounding * result.last.cost : 0.0;
+    if (!pass.finite || !(fall > -unseen)) return TriedStep{0.0, converged || (pass.finite && is_last)};
     result.coefficients = trial;
     result.last = std::move(pass);
     result.costs.push_back(result.last.cost);

@@ -22,7 +22,10 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 Eigen::VectorXcd decaying_wave(Complex rate, double interval, Index count) {
   constexpr Index span = 64;
-  Eigen::VectorXcd wave(count);
+  constexpr double over = 700.0;  // e^-700, next to what underflows, and takes long to do so
+  Eigen::VectorXcd wave = Eigen::VectorXcd::Zero(count);
+  if (const double last = -over / (rate.real() * interval); last >= 0.0 && last < static_cast<double>(count))
+    count = static_cast<Index>(last) + 1;
   const Index first = std::min(span, count);
   for (Index k = 0; k < first; ++k) wave[k] = std::exp(rate * (interval * static_cast<double>(k)));
   for (Index begin = span; begin < count; begin += span) {

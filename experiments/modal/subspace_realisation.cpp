@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
@@ -12,37 +13,38 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
+#include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/modal/poles.hpp"
 #include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 
 using Complex = std::complex<double>;
-using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
 
-ShapeFit fit_shapes_at(const Eigen::MatrixXd& outputs, const Eigen::VectorXd& time,
-                       const std::vector<Complex>& rates, const std::vector<bool>& oscillating) {
+namespace {
+
+/// By the parts of waves e^(rate (t - t_m)). @param wave of a mode (N) @param origins t_m (n)
+ShapeFit fitted_shapes(const MatrixXd& outputs, const std::function<VectorXcd(Index m)>& wave,
+                       const VectorXd& origins, const std::vector<Complex>& rates,
+                       const std::vector<bool>& oscillating) {
   const Index count = outputs.cols(), modes = static_cast<Index>(rates.size());
-  const auto scaled_at = [&](Index m) { return rates[m].real() > 0 ? time[count - 1] : 0.0; };
-  Eigen::MatrixXd basis(count, 2 * modes);
+  MatrixXd basis(count, 2 * modes);
   Index columns = 0;
   for (Index m = 0; m < modes; ++m) {
-    for (Index k = 0; k < count; ++k) {
-      const Complex value = std::exp(rates[m] * (time[k] - scaled_at(m)));
-      basis(k, columns) = value.real();
-      if (oscillating[m]) basis(k, columns + 1) = -value.imag();
-    }
-    columns += oscillating[m] ? 2 : 1;
+    const VectorXcd values = wave(m);
+    basis.col(columns++) = values.real();
+    if (oscillating[m]) basis.col(columns++) = -values.imag();
   }
   basis.conservativeResize(Eigen::NoChange, columns);
-  const Eigen::MatrixXd parts = least_squares(basis, outputs.transpose());  // (columns x p)
+  const MatrixXd parts = least_squares(basis, outputs.transpose());  // (columns x p)
 
   ShapeFit fit;
   fit.shapes.resize(outputs.rows(), modes);
   for (Index m = 0, at = 0; m < modes; ++m) {
     Eigen::VectorXcd shape = parts.row(at++).transpose().cast<Complex>();
     if (oscillating[m]) shape += Complex(0, 1) * parts.row(at++).transpose().cast<Complex>();
-    fit.shapes.col(m) = shape * std::exp(-rates[m] * scaled_at(m));
+    fit.shapes.col(m) = shape * std::exp(-rates[m] * origins[m]);
   }
   fit.reconstruction = (basis * parts).transpose();
   const auto freedom = static_cast<double>(std::max<Index>(1, count - 2 * columns));
@@ -51,11 +53,31 @@ ShapeFit fit_shapes_at(const Eigen::MatrixXd& outputs, const Eigen::VectorXd& ti
   return fit;
 }
 
-ShapeFit fit_shapes(const Eigen::MatrixXd& outputs, double interval, const std::vector<Complex>& rates,
+/// Waves that grow are one at the end (n) [s].
+VectorXd origins_of(const std::vector<Complex>& rates, double end) {
+  VectorXd origins(static_cast<Index>(rates.size()));
+  for (Index m = 0; m < origins.size(); ++m) origins[m] = rates[m].real() > 0 ? end : 0.0;
+  return origins;
+}
+
+}  // namespace
+
+ShapeFit fit_shapes_at(const MatrixXd& outputs, const VectorXd& time, const std::vector<Complex>& rates,
+                       const std::vector<bool>& oscillating) {
+  const VectorXd origins = origins_of(rates, time[time.size() - 1]);
+  const auto wave = [&](Index m) -> VectorXcd { return (rates[m] * (time.array() - origins[m])).exp(); };
+  return fitted_shapes(outputs, wave, origins, rates, oscillating);
+}
+
+ShapeFit fit_shapes(const MatrixXd& outputs, double interval, const std::vector<Complex>& rates,
                     const std::vector<bool>& oscillating) {
-  Eigen::VectorXd time(outputs.cols());
-  for (Index k = 0; k < time.size(); ++k) time[k] = interval * static_cast<double>(k);
-  return fit_shapes_at(outputs, time, rates, oscillating);
+  const Index count = outputs.cols();
+  const VectorXd origins = origins_of(rates, interval * static_cast<double>(count - 1));
+  const auto wave = [&](Index m) -> VectorXcd {
+    if (origins[m] > 0.0) return decaying_wave(-rates[m], interval, count).reverse();
+    return decaying_wave(rates[m], interval, count);
+  };
+  return fitted_shapes(outputs, wave, origins, rates, oscillating);
 }
 
 namespace {

@@ -49,12 +49,40 @@ Index even_fast_length_around(Index samples) {
 
 namespace {
 
+/// R of (A D, B) in blocks of rows that stay in the cache: what the least squares of many rows need of them
+/// ((n + p) x (n + p)). @param scale D (n)
+template <class Matrix>
+Matrix triangle_of(const Matrix& a, const Eigen::VectorXd& scale, const Matrix& b) {
+  constexpr Index block = 1024;
+  const Index n = a.cols(), size = n + b.cols();
+  Matrix triangle = Matrix::Zero(size, size), stacked(size + block, size);
+  for (Index begin = 0; begin < a.rows(); begin += block) {
+    const Index count = std::min(block, a.rows() - begin);
+    stacked.resize(size + count, size);
+    stacked.topRows(size) = triangle;
+    stacked.bottomLeftCorner(count, n) = a.middleRows(begin, count) * scale.asDiagonal();
+    stacked.bottomRightCorner(count, b.cols()) = b.middleRows(begin, count);
+    const Eigen::HouseholderQR<Matrix> factors(stacked);
+    triangle = factors.matrixQR().topRows(size).template triangularView<Eigen::Upper>();
+  }
+  return triangle;
+}
+
 template <class Matrix>
 Matrix solve(const Matrix& a, const Matrix& b) {
   if (!a.allFinite() || !b.allFinite())
     throw std::invalid_argument("least squares with a value that is not a finite number");
   if (a.size() == 0 || a.isZero(0)) return Matrix::Zero(a.cols(), b.cols());
   const Eigen::VectorXd scale = a.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  constexpr Index many = 16384;
+  if (a.rows() > many) {
+    constexpr double rounding = 1e-13;  // of that many rows
+    const Matrix triangle = triangle_of(a, scale, b);
+    Eigen::CompleteOrthogonalDecomposition<Matrix> factors(a.cols(), a.cols());
+    factors.setThreshold(rounding);
+    factors.compute(triangle.topLeftCorner(a.cols(), a.cols()));
+    return scale.asDiagonal() * factors.solve(triangle.topRightCorner(a.cols(), b.cols()));
+  }
   return scale.asDiagonal() * (a * scale.asDiagonal()).colPivHouseholderQr().solve(b);
 }
 

@@ -72,8 +72,8 @@ Table best_table(const NoiseStudy& study) {
     table.row(std::move(row));
   }
   table.note =
-      "Factor 1: R of the sensor plus the mean square of the higher modes. Higher / first: amplitudes in "
-      "what is observed, at the beginning.";
+      "Factor 1: R is the sensor noise plus the mean square of the higher modes. Higher / first: amplitudes "
+      "in what is observed, at the beginning.";
   return table;
 }
 

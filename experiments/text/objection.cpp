@@ -78,7 +78,7 @@ const std::vector<ObjectionKind>& objection_kinds() {
       {"drift_or_pair", modes,
        "as close_modes; damping ratios differ by a factor of 1.5, or the modes by a quarter of a cycle at "
        "most",
-       "The mode follows its amplitude, or is two: intervals are widened."},
+       "Either frequency or damping depends on amplitude, or there are two modes. Intervals are widened."},
       {"few_lines", modes, "lines of the spectrum within a mode's band",
        "Too few periods: the standard deviation of the damping ratio is uncertain."},
       {"lines", modes, "line of the spectrum that no mode explains",

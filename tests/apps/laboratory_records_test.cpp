@@ -108,7 +108,7 @@ TEST_F(Laboratory, DropOutAndSpikeAreLeftOutAndTold) {
                   .get<double>(),
               frequency, 1e-3 * frequency);
   const Outcome inspected = place.run("inspect torn.csv");
-  EXPECT_THAT(inspected.out, HasSubstr("1 spike, the first of 1e+10 m/s2 at 3 s"));
+  EXPECT_THAT(inspected.out, HasSubstr("1 spike, 1e+10 m/s2 at 3 s"));
 }
 
 /// The tutorial's mode at stamps as a cheap logger makes them: late now and then, so that the median interval

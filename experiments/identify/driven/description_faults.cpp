@@ -120,8 +120,10 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
                            const Experiment& experiment, const LineScores& left, const VectorXd& theta,
                            bool much_is_left, bool weighed, std::vector<DescriptionFault>& faults) {
   const double whole = left.left().squaredNorm(), cost = evaluate_driven(problem, theta).cost;
+  constexpr std::size_t few = 24;
   const JointModel described = models.of(experiment.structure);
-  for (const Candidate& candidate : candidates_of({experiment.structure})) {
+  const std::vector<Candidate> candidates = candidates_of({experiment.structure});
+  for (const Candidate& candidate : candidates) {
     if (candidate.of_clock || is_asked(experiment, candidate)) continue;
     if (!weighed && candidate.weighs_all) continue;
     try {
@@ -134,7 +136,8 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
       // Where the unknowns have moved by many widths of a resonance, what is left is not linear in x.
       const VectorXd along = score->moved / score->change, unmoved = VectorXd::Zero(theta.size());
       std::vector<std::pair<double, VectorXd>> firsts;  // of x, and how the unknowns move with it at first
-      if (score->explained > worth_following) firsts.emplace_back(score->change, along);
+      if (candidates.size() <= few || score->explained > worth_following)
+        firsts.emplace_back(score->change, along);
       if (much_is_left && !(score->explained > mostly))
         for (const double sign : {1.0, -1.0}) {
           firsts.emplace_back(0.5 * sign * candidate.scale(), along);
@@ -189,6 +192,28 @@ void add_lags(const Record& record, const LineScores& left, std::vector<Descript
   for (std::size_t i = 0; i < outputs.size() && outputs.size() > 1; ++i)
     add(record.channels[static_cast<std::size_t>(outputs[i])].name, static_cast<Index>(i));
   add("the inputs are", {});
+}
+
+/// Inputs that run by lines between their samples, as simulations make them, where they are taken for
+/// band-limited.
+void add_path(const DrivenProblem& problem, const Record& record, const LineScores& left,
+              const VectorXd& theta, std::vector<DescriptionFault>& faults) {
+  if (problem.path != InputPath::band_limited) return;
+  DrivenProblem other = problem;
+  other.path = InputPath::linear;
+  const auto fit = promising_fit(other, theta, evaluate_driven(problem, theta).cost);
+  if (!fit) return;
+  const double whole = std::max(left.left().squaredNorm(), 1e-300),
+               share = std::max(LineScores(other, fit->theta).left().squaredNorm() / whole, 1e-300),
+               score = std::sqrt(static_cast<double>(left.left().size()) * -std::log(std::min(share, 1.0)));
+  // Where less of the residual goes, a sensor's low-pass looks alike.
+  if (!(share < 1.0 - mostly) || !(score > sure_score)) return;
+  const std::vector<Index> inputs = input_channels(record);
+  const std::string who = inputs.size() == 1 ? record.channels[static_cast<std::size_t>(inputs[0])].name +
+                                                   " runs linearly between its"
+                                             : "the inputs run linearly between their";
+  faults.push_back({who + " samples by the record: input = \"linear\" in [record]", score, 1.0 - share,
+                    fit->theta - theta});
 }
 
 /// Every sensor of a chain at every other floor, and every two of one quantity exchanged.
@@ -334,13 +359,14 @@ Experiment at_estimates(Experiment experiment, const JointModel& model, const Ve
 
 }  // namespace
 
-std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,
-                                                 const Choice& reduction, const std::filesystem::path& folder,
-                                                 const JointModel& model, const filters::Gaussian& prior,
-                                                 const VectorXd& theta, const VectorXd& input_noise) {
-  std::vector<DescriptionFault> faults;
+DescriptionTests description_tests(const Experiment& experiment, const Record& record,
+                                   const Choice& reduction, const std::filesystem::path& folder,
+                                   const JointModel& model, const filters::Gaussian& prior,
+                                   const VectorXd& theta, const VectorXd& input_noise) {
+  DescriptionTests tests;
+  std::vector<DescriptionFault>& faults = tests.faults;
   auto problem = driven_problem(model, measurements(record), prior);
-  if (!problem) return faults;
+  if (!problem) return tests;
   constexpr Index most_numbers = 2000;  // of a long record every so many lines: each costs all trials alike
   RecordLines& lines = problem->parts.front();
   const Index stride = lines.outputs.size() / most_numbers + 1;
@@ -349,6 +375,8 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
     if (has_noise(input_noise)) problem->input_noise = input_noise;
     const DrivenFit fit = weigh_by_residual(*problem, theta);
     const LineScores left(*problem, theta);
+    if (problem->path == InputPath::band_limited)  // lines of other inputs have images beside them
+      tests.deviations = left.deviations() / std::sqrt(static_cast<double>(stride));
     const Experiment there = at_estimates(experiment, model, theta);
     const OtherModels models(there, record, reduction, folder),
         as_described(experiment, record, reduction, folder);
@@ -356,6 +384,7 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
     add_structure_changes(*problem, models, experiment, left, theta, fit.left_share > much,
                           measures_force(record), faults);
     add_gains(record, left, faults);
+    add_path(*problem, record, left, theta, faults);
     if (problem->input_noise.size() > 0) add_lags(record, left, faults);
     if (fit.left_share > misplaced)
       add_places(*problem, as_described, experiment, record, left, theta, faults);
@@ -365,7 +394,7 @@ std::vector<DescriptionFault> description_faults(const Experiment& experiment, c
   for (DescriptionFault& fault : faults)
     fault.gain = 0.5 * static_cast<double>(stride) * fault.score * fault.score;
   std::ranges::stable_sort(faults, std::greater<>(), &DescriptionFault::explained);
-  return faults;
+  return tests;
 }
 
 }  // namespace beamid::experiments

@@ -22,6 +22,13 @@ struct DescriptionFault {
   double gain = 0.0;  ///< of the logarithm of the likelihood of all lines, by the score; infinite likewise
 };
 
+/// What the lines of a driven record say of a description.
+struct DescriptionTests {
+  std::vector<DescriptionFault> faults;  ///< the best first
+  Eigen::VectorXd
+      deviations;  ///< of the unknowns by the scatter of the lines (LineScores), eta (q); empty: none
+};
+
 /// Score tests [rao1948], one quantity x at a time. With r what is left of all lines, J its slopes by the
 /// unknowns, d that by x, and d' what J leaves of d:
 ///
@@ -30,18 +37,19 @@ struct DescriptionFault {
 ///
 /// with r' = r - d' x and h_k = d'_k^2 / d'^T d' of line k, whatever the noise of each [mackinnon1985]. x are
 /// the candidates of model_check/candidates.hpp that are not asked about, gains of channels and inputs. A
-/// change that explains a tenth or more is followed to its end, by fits of the unknowns with it. Of a chain
+/// change is followed to its end, by fits of the unknowns with it: of a few lines at a narrow resonance the
+/// score is blind. Where there are more than 24 candidates, those that explain a tenth are. Of a chain
 /// each sensor is tried at every other floor, and every two are exchanged, where 15 % or more of the motion
-/// is left. A damping ratio that is asked of all modes together is held against ratios of their own of the
-/// modes in the band, all at once. Beside noise of the inputs r and its derivatives are whitened, and lags of
-/// the channels and of the inputs are tried.
+/// is left. Inputs that are taken for band-limited are tried with lines between their samples. A damping
+/// ratio that is asked of all modes together is held against ratios of their own of the modes in the band,
+/// all at once. Beside noise of the inputs r and its derivatives are whitened, and lags of the channels and
+/// of the inputs are tried.
 /// @param theta the unknowns that were found, in the model's coordinates (q)
 /// @param input_noise standard deviations (m); none above 0: the inputs are exact
-/// @returns the best first; empty where the record is none of a small linear model with measured inputs.
-std::vector<DescriptionFault> description_faults(const Experiment& experiment, const Record& record,
-                                                 const Choice& reduction, const std::filesystem::path& folder,
-                                                 const JointModel& model, const filters::Gaussian& prior,
-                                                 const Eigen::VectorXd& theta,
-                                                 const Eigen::VectorXd& input_noise);
+/// @returns empty where the record is none of a small linear model with measured inputs.
+DescriptionTests description_tests(const Experiment& experiment, const Record& record,
+                                   const Choice& reduction, const std::filesystem::path& folder,
+                                   const JointModel& model, const filters::Gaussian& prior,
+                                   const Eigen::VectorXd& theta, const Eigen::VectorXd& input_noise);
 
 }  // namespace beamid::experiments

@@ -332,7 +332,7 @@ DrivenFit weigh_by_residual(DrivenProblem& problem, const VectorXd& theta) {
   exact.weights.setOnes(problem.parts.front().outputs.rows());
   DrivenFit fit = evaluate_driven(exact, theta);
   const VectorXd& noise = problem.input_noise;
-  const VectorXd left = noise.size() > 0 ? likeliest_line_noise(exact, theta, noise, true).outputs : fit.left;
+  const VectorXd left = noise.size() > 0 ? likeliest_output_noise(exact, theta, noise) : fit.left;
   problem.weights = left.cwiseMax(1e-150).cwiseInverse();
   return fit;
 }

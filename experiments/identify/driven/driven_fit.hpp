@@ -128,7 +128,7 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem);
 DrivenFit evaluate_driven(const DrivenProblem& problem, const Eigen::VectorXd& theta);
 
 /// The weights become those of the channels' noise: of all that is left at a theta or, where the inputs hold
-/// noise, of the likeliest beside that (likeliest_line_noise()).
+/// noise, of the likeliest beside that (likeliest_output_noise()).
 /// @returns what is left there, of unit weights and exact inputs
 DrivenFit weigh_by_residual(DrivenProblem& problem, const Eigen::VectorXd& theta);
 
@@ -159,9 +159,12 @@ struct LevelsOfNoise {
 /// a channel in a third of an octave, make 2 sum_c n_c (m_c - 1 - ln m_c) chi-square, of a degree of freedom
 /// for each but those of the levels.
 /// @param sizes of the inputs' noise to begin with (m)
-/// @param keep_inputs whether it stays at these
 LevelsOfNoise likeliest_line_noise(const DrivenProblem& problem, const Eigen::VectorXd& theta,
-                                   const Eigen::VectorXd& sizes, bool keep_inputs);
+                                   const Eigen::VectorXd& sizes);
+
+/// Of the outputs alone, beside inputs whose noise is known (p). @param sizes of it (m)
+Eigen::VectorXd likeliest_output_noise(const DrivenProblem& problem, const Eigen::VectorXd& theta,
+                                       const Eigen::VectorXd& sizes);
 
 /// The whole state of a model at its unknowns, its motion at rest.
 Eigen::VectorXd state_of_unknowns(const JointModel& model, const Eigen::VectorXd& theta);

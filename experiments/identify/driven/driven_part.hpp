@@ -18,6 +18,10 @@ namespace beamid::experiments {
 Eigen::MatrixXcd part_motion(const DrivenProblem& problem, const LinearResponse& response,
                              const RecordLines& part, const Eigen::VectorXd& difference);
 
+/// W G_k of every input by itself, times its size (p x L each).
+std::vector<Eigen::MatrixXcd> motions_by_inputs(const DrivenProblem& problem, const LinearResponse& response,
+                                                const RecordLines& part, const Eigen::VectorXd& sizes);
+
 /// Every so many lines of a part.
 RecordLines thinned(const RecordLines& part, Eigen::Index stride);
 
@@ -89,6 +93,12 @@ class LineScores {
   };
   /// Absent where the unknowns make of it what it makes. @param collinear what they leave of it, at least
   std::optional<Score> score(const Eigen::VectorXd& direction, double collinear = 1e-3) const;
+
+  /// Standard deviations of the unknowns by the residual of each line where it weighs, whatever its noise
+  /// (q): the diagonal of N^-1 (sum_k J_k^T r'_k r'_k^T J_k) N^-1, N = J^T J, r'_k = r_k / sqrt(1 - h_k) with
+  /// the leverage h_k [mackinnon1985]. Forces that nobody measures make the lines of a resonance scatter by
+  /// more than those beside it.
+  Eigen::VectorXd deviations() const;
 
   /// s^T V^-1 s of many directions together, by what is left with them, whatever the noise of each line.
   /// Directions that the unknowns make, or that make each other, drop out.

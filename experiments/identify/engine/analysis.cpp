@@ -154,10 +154,10 @@ void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysi
   } catch (const std::invalid_argument& error) {
     const char* const from = experiment.prior.stiffness ? "prior.stiffness_n_per_m"
                              : experiment.is_described
-                                 ? "the beam as described; prior.stiffness_n_per_m states it better"
-                                 : "the strongest line; beamid modal lists all modes of the record";
-    found.modal_refusal = fmt::format("modal analysis: {} (looked for near {:.6g} Hz of {})", error.what(),
-                                      found.expected_hz, from);
+                                 ? "the beam as described. Correct the beam, or set prior.stiffness_n_per_m"
+                                 : "the strongest line. beamid modal lists all modes of the record";
+    found.modal_refusal = fmt::format("{}. For modal analysis a mode was expected near {:.6g} Hz, from {}",
+                                      error.what(), found.expected_hz, from);
   } catch (const std::runtime_error& error) {
     found.modal_failure = error.what();
   }
@@ -284,8 +284,8 @@ RecordAnalysis analyse_to(Depth depth, const Experiment& experiment, const Recor
   }
   if (!found.mode)
     found.notes.push_back(fmt::format(
-        "The record's own frequency could not be had without a model ({}): the beam's takes its place as a "
-        "first estimate, and runs are not checked against it.",
+        "Modal analysis of the record failed: {}. The first estimate is the beam's frequency. No independent "
+        "check was made.",
         found.modal_failure.empty() ? found.modal_refusal : found.modal_failure));
   return found;
 }

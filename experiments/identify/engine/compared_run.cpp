@@ -12,6 +12,7 @@
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/engine/passes.hpp"
+#include "experiments/identify/verdict/run_verdict.hpp"
 #include "experiments/models/joint_model.hpp"
 #include "experiments/signal/missing_samples.hpp"
 
@@ -223,8 +224,8 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
                              100.0 * (1.0 - run.sections->left_share));
     run.object({"unexplained",
                 fmt::format("The model explains {:.0f} % of the motion; the rest is not noise. Intervals "
-                            "hold the scatter over the record. A mass, a place or a gain "
-                            "described wrongly does so, too, and moves estimates by more.",
+                            "include the scatter over the record. A wrong mass, position or gain causes "
+                            "such a residual as well, and shifts estimates further.",
                             100.0 * (1.0 - run.sections->left_share)),
                 run.misfit_percent, too_much});
     return;
@@ -252,26 +253,20 @@ bool judge_faults(ComparedRun& run) {
   const auto share = [](const DescriptionFault& fault) {
     return fmt::format("{} ({:.0f} % of the residual, in squares)", fault.sentence, 100.0 * fault.explained);
   };
-  // By how much a change moves the unknown that it moves most, in deviations as they are reported.
-  const auto farthest = [&](const DescriptionFault& fault) {
-    std::pair<double, std::size_t> most{0.0, 0};
-    for (std::size_t j = 0; j < run.parameters.size(); ++j) {
-      const auto at = static_cast<Eigen::Index>(j);
-      const Unknown& unknown = run.unknowns[j];
-      const double from = run.unknown_state.mean[at],
-                   change = unknown.to_physical(from + fault.moved[at]) - unknown.to_physical(from),
-                   moved = std::abs(change) / run.parameters[j].estimate.deviation;
-      if (moved > most.first) most = {moved, j};
-    }
-    return most;
+  const auto moved_by = [&](const DescriptionFault& fault) -> VectorXd {
+    return fault.moved.cwiseQuotient(run.unknown_state.covariance.diagonal().cwiseSqrt());
   };
   std::string named;
   std::size_t count = 0;
-  bool moves = false;
-  for (const DescriptionFault& fault : run.faults)
-    if (fault.explained > mostly && count < most_named) {
+  constexpr double nearly_as_much = 2.0;  // of what the best leaves
+  bool moves = false, is_material = false;
+  for (const DescriptionFault& fault : run.description.faults)
+    if (fault.explained > mostly && count < most_named &&
+        1.0 - fault.explained <= nearly_as_much * (1.0 - run.description.faults.front().explained)) {
       named += (count++ == 0 ? "" : "; or ") + share(fault);
-      moves = moves || std::isinf(fault.score) || farthest(fault).first > quantile_95;
+      const Move move = farthest_move(run, moved_by(fault));
+      moves = moves || std::isinf(fault.score) || move.deviations > quantile_95;
+      is_material = is_material || std::isinf(fault.score) || move.is_material;
     }
   constexpr double slight = 3.0;  // % of the motion
   const auto mention = [&](const std::string& what, double explained) {
@@ -280,29 +275,41 @@ bool judge_faults(ComparedRun& run) {
                                     ". Allowed for, it moves no estimate out of its interval.",
                                 explained, mostly);
   };
-  if (count > 0 && !moves && run.misfit_percent < slight) {
-    mention(named, run.faults.front().explained);
+  if (count > 0 && (moves ? !is_material && leaves_next_to_nothing(run) : run.misfit_percent < slight)) {
+    if (moves) hold_moved(run, moved_by(run.description.faults.front()));
+    mention(named, run.description.faults.front().explained);
     return true;
   }
+  std::string held;
+  double held_share = 0.0;
   if (count == 0 && run.status == ComparedRun::Status::converged)
-    for (const DescriptionFault& fault : run.faults) {
-      const auto [moved, unknown] = farthest(fault);
-      if (!(fault.score > surely) || !(fault.explained > least) || !(moved > quantile_95)) continue;
+    for (const DescriptionFault& fault : run.description.faults) {
+      const Move move = farthest_move(run, moved_by(fault));
+      if (!(fault.score > surely) || !(move.deviations > quantile_95)) continue;
+      if (!(fault.explained > least) || (!move.is_material && leaves_next_to_nothing(run))) {
+        hold_moved(run, moved_by(fault));
+        if (held.empty()) held = share(fault), held_share = fault.explained;
+        continue;
+      }
       named = fmt::format("{}; allowed for, it moves {} by {:.2g} of its standard deviations", share(fault),
-                          run.parameters[unknown].estimate.name, moved);
+                          run.parameters[move.unknown].estimate.name, move.deviations);
       break;
     }
   constexpr double highly_significant = 10.0, good_part = 0.1;  // deviations; of the residual, in squares
+  if (named.empty() && !held.empty()) {
+    mention(held + ". Intervals are widened to hold the estimates with it", held_share);
+    return false;
+  }
   if (named.empty()) {
-    if (run.status == ComparedRun::Status::converged && !run.faults.empty())
-      if (const DescriptionFault& best = run.faults.front();
+    if (run.status == ComparedRun::Status::converged && !run.description.faults.empty())
+      if (const DescriptionFault& best = run.description.faults.front();
           best.score > highly_significant && best.explained > good_part)
         mention(share(best), best.explained);
     return false;
   }
   run.object({"description",
               "CONTRADICTED: one thing described otherwise explains the record better: " + named + ".",
-              run.faults.front().explained, mostly});
+              run.description.faults.front().explained, mostly});
   run.status = ComparedRun::Status::contradicted;
   run.reason = named;
   return true;

@@ -1,6 +1,7 @@
 // One way to identify a record, from the model to its score.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -8,6 +9,7 @@
 #include "experiments/identify/engine/analysis.hpp"
 #include "experiments/identify/engine/comparison.hpp"
 #include "experiments/identify/engine/first_guess.hpp"
+#include "experiments/identify/engine/noise_in_estimates.hpp"
 #include "experiments/text/progress.hpp"
 
 namespace beamid::experiments {
@@ -52,8 +54,7 @@ struct RunSettings {
   int passes = 3;
   double true_mass = 0.0;  ///< of one degree of freedom of the beam simulated, by true_mass() [kg]
   filters::Keep keep = filters::Keep::last_estimate;
-  // Standard deviations of noise by the record; empty: as stated.
-  Eigen::VectorXd input_noise = {}, output_noise = {};  ///< (m), (p)
+  std::optional<LikeliestInputNoise> input_noise = {};  ///< by the record; absent: as stated
 };
 
 /// What every run of a comparison shares.

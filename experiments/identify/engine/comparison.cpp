@@ -73,16 +73,18 @@ ComparedRun refused(const std::string& reason, const Place& place) {
 
 /// One reduction, its model made once for all filters.
 struct ReducedBeam {
-  std::optional<ModelSetting> setting;
-  std::optional<JointModel> model;
-  std::optional<StartedModel> started;  ///< once a filter begins without the modal analysis
-  double mass = 0.0;                    ///< of one degree of freedom of the beam simulated [kg]
-  std::string refusal;                  ///< why there is none
+  const Choice& reduction;
+  const std::filesystem::path& folder;  ///< of the experiment's files
+  std::optional<ModelSetting> setting = {};
+  std::optional<JointModel> model = {};
+  std::optional<StartedModel> started = {};  ///< once a filter begins without the modal analysis
+  double mass = 0.0;                         ///< of one degree of freedom of the beam simulated [kg]
+  std::string refusal = {};                  ///< why there is none
 };
 
 ReducedBeam reduced_beam(const RunContext& context, const Choice& reduction,
                          const std::filesystem::path& folder) {
-  ReducedBeam made;
+  ReducedBeam made{reduction, folder};
   try {
     made.setting = model_setting(context.experiment, context.analysis.record, reduction, folder);
     const Choice& model = context.experiment.model;
@@ -161,32 +163,36 @@ ComparedRun identified_or_refused(const RunContext& context, ReducedBeam& made, 
 }
 
 // What of the description would explain what a driven model leaves.
-void look_for_faults(const RunContext& context, const ReducedBeam& made, const Choice& reduction,
-                     const std::filesystem::path& folder, ComparedRun& run) {
+void look_for_faults(const RunContext& context, const ReducedBeam& made, ComparedRun& run) {
   if (!context.analysis.forced() || !run.answers() || !made.started || !run.model ||
       !context.compared.clocks.empty())
     return;
   context.progress("what may be described wrongly");
   const filters::Gaussian known =
       known_about_start(*made.started, *made.setting, measurements(context.analysis.record).outputs);
-  run.faults = description_faults(context.experiment, context.analysis.record, reduction, folder, *run.model,
-                                  known, run.unknown_state.mean, run.settings.input_noise);
+  run.description =
+      description_tests(context.experiment, context.analysis.record, made.reduction, made.folder, *run.model,
+                        known, run.unknown_state.mean, run.settings.input_noise);
+}
+
+// Under its names, tested for what may be described wrongly where `identify` asks, and judged.
+ComparedRun judged_run(const RunContext& context, ReducedBeam& made, const RunSettings& settings) {
+  ComparedRun run = identified_or_refused(context, made, settings);
+  run.reduction = to_text(made.reduction);
+  run.filter = choice_text(settings.filter, filters::filter_registry().find(settings.filter.name).options);
+  run.discretisation = settings.discretisation;
+  if (settings.keep == filters::Keep::all_estimates) look_for_faults(context, made, run);
+  judge_run(context, run);
+  return run;
 }
 
 // With noise of its inputs, where the record shows it better than anything that is described wrongly, and
 // what is left with it is noise, or has a cause: storeys that yield make a residual that noise of the base
 // cannot.
-void take_input_noise(const RunContext& context, ReducedBeam& made, RunSettings settings,
-                      const Choice& reduction, const std::filesystem::path& folder, ComparedRun& run) {
+void take_input_noise(const RunContext& context, ReducedBeam& made, RunSettings settings, ComparedRun& run) {
   if (!shows_input_noise(context, run)) return;
-  settings.input_noise = run.likeliest_input_noise->deviation;
-  settings.output_noise = run.likeliest_input_noise->outputs;
-  ComparedRun with = identified_or_refused(context, made, settings);
-  if (!with.has_estimate()) return;
-  with.likeliest_input_noise = run.likeliest_input_noise;
-  with.reduction = run.reduction, with.filter = run.filter, with.discretisation = run.discretisation;
-  look_for_faults(context, made, reduction, folder, with);
-  judge_run(context, with);
+  settings.input_noise = run.likeliest_input_noise;
+  ComparedRun with = judged_run(context, made, settings);
   const bool is_explained =
       leaves_noise(with) ||
       (run.status == ComparedRun::Status::converged &&
@@ -291,15 +297,9 @@ Comparison compare(const Experiment& experiment, ComparedRecord record, const st
         if (made.refusal.empty()) fit_to_model(*made.model, settings);
         countdown.begin(
             fmt::format("{}, {}, {}", to_text(reduction), settings.filter.name, settings.discretisation));
-        ComparedRun run = identified_or_refused(context, made, settings);
+        ComparedRun run = judged_run(context, made, settings);
         countdown.count();
-        run.reduction = to_text(reduction);
-        run.filter =
-            choice_text(settings.filter, filters::filter_registry().find(settings.filter.name).options);
-        run.discretisation = settings.discretisation;
-        if (keep == filters::Keep::all_estimates) look_for_faults(context, made, reduction, folder, run);
-        judge_run(context, run);
-        take_input_noise(context, made, settings, reduction, folder, run);
+        take_input_noise(context, made, settings, run);
         comparison.runs.push_back(std::move(run));
       }
   }

@@ -140,7 +140,7 @@ struct ComparedRun {
   filters::Gaussian unknown_state, unknown_start;  ///< of what the filter's state carries for them: at the
                                                    ///< end, and at the start of the last pass (q)
   std::optional<SectionScatter> sections;          ///< of a driven record that is long enough
-  std::vector<DescriptionFault> faults;            ///< of a driven linear model; by `identify`
+  DescriptionTests description;                    ///< of a driven linear model; by `identify`
   std::optional<ClockStep> clocks;      ///< of channels with clocks of their own; absent: there are none
   LikeliestClocks likeliest_clocks;     ///< of a driven record without such channels
   std::optional<FreeModes> free_modes;  ///< of a free decay; by `identify`

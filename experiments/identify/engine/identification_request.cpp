@@ -296,9 +296,9 @@ std::vector<std::string> IdentificationRequest::decisions() const {
   if (!window.empty()) said.push_back(window);
   if (thinned)
     said.push_back(
-        "Higher modes are a large part of this record. A filter of one mode would take them for white noise: "
-        "the record was low-passed and decimated first, which changes neither frequency nor damping. Any "
-        "[[record.prepare]] of the experiment file takes the place of this.");
+        "Higher modes are a large part of this record, and a filter of one mode takes them for white noise. "
+        "The record was low-passed and decimated first. [[record.prepare]] of the experiment file replaces "
+        "this step.");
   return said;
 }
 

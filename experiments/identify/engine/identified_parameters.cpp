@@ -40,6 +40,14 @@ std::string failure_sentences(const std::vector<filters::Failure>& events) {
   return text;
 }
 
+std::string failures_paragraph(const std::vector<filters::Failure>& events) {
+  if (events.empty()) return {};
+  std::size_t samples = 1;  // events of one sample stand together
+  for (std::size_t i = 1; i < events.size(); ++i) samples += events[i].step != events[i - 1].step ? 1 : 0;
+  return fmt::format("The filter failed at {} sample{}. --on-failure selects the response. {}", samples,
+                     samples == 1 ? "" : "s", failure_sentences(events));
+}
+
 std::vector<Parameter> parameters(const RecordIdentification& found) {
   return parameters(found, found.identification);
 }

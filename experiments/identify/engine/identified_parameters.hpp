@@ -24,6 +24,8 @@ std::optional<filters::Diagnostics> diagnostics_of(const filters::FilterRun& run
 
 /// A paragraph about the first five, and how many more there were; empty when there were none.
 std::string failure_sentences(const std::vector<filters::Failure>& events);
+/// The same behind the number of samples and what decides how a filter goes on.
+std::string failures_paragraph(const std::vector<filters::Failure>& events);
 
 /// One identified quantity and what the modal analysis says of it.
 struct Parameter {

@@ -105,10 +105,10 @@ std::string agreement_words(const JointEstimate& estimate, const std::vector<std
     if (const double ratio = estimate.scatter[static_cast<Eigen::Index>(i)]; ratio > 1)
       widened += fmt::format("{}{} by {:.3g}", widened.empty() ? "" : ", ", names[i], ratio);
   return fmt::format(
-      "THE RECORDS DISAGREE by more than their noise ({}). What they share is then no constant: damping and "
-      "frequency that depend on amplitude, a clamp that moved, or motion that the model does not have. The "
-      "joint intervals are widened by the scatter of the records, {} (Birge's ratio), which is itself known "
-      "from so few records only.",
+      "THE RECORDS DISAGREE by more than their noise ({}). No constant parameters describe all of them. "
+      "Possible causes: damping or frequency that depends on amplitude, a clamp that moved, or motion that "
+      "the model lacks. The joint intervals include the scatter of the records (Birge's ratio: {}), which "
+      "few records determine poorly.",
       measured, widened);
 }
 

@@ -100,11 +100,12 @@ Passes::Passes(const RunContext& context, const ModelSetting& setting, const Sta
   run_.settings.filter_options = settings.filter.options;
   run_.settings.discretisation = settings.discretisation;
   run_.settings.on_failure = context.experiment.on_failure;
-  run_.settings.input_noise = settings.input_noise.size() > 0
-                                  ? settings.input_noise
-                                  : input_noise(context.experiment, context.analysis.record);
-  for (Index i = 0; i < settings.output_noise.size(); ++i)
-    if (!known_.is_stated[static_cast<std::size_t>(i)]) known_.configured[i] = settings.output_noise[i];
+  run_.settings.input_noise = input_noise(context.experiment, context.analysis.record);
+  if (const auto& found = run_.likeliest_input_noise = settings.input_noise; found) {
+    run_.settings.input_noise = found->deviation;
+    for (Index i = 0; i < found->outputs.size(); ++i)
+      if (!known_.is_stated[static_cast<std::size_t>(i)]) known_.configured[i] = found->outputs[i];
+  }
   if (context.compared.has_open_clocks()) ignore_clocks(context.compared.clocks, record_.outputs, known_);
 }
 

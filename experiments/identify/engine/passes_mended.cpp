@@ -170,9 +170,9 @@ void Passes::mend_by_output_error() {
                              "sample, ended overconfident or where all samples at once do not. The estimates "
                              "are those of all samples at once (output error).")
         : astray
-            ? fmt::format("The filter had not settled, was overconfident, or ended where all samples at once "
-                          "do not, with a residual of {:.4g} %. The estimates are those of all samples at "
-                          "once (output error), with a residual of {:.4g} %.",
+            ? fmt::format("The filter did not converge, was overconfident, or ended at another estimate "
+                          "(residual {:.4g} %). The estimates are those of all samples at once (output "
+                          "error; residual {:.4g} %).",
                           left, now_left)
             : fmt::format("The filter settled with a residual of {:.3g} % of the record. The estimates are "
                           "those of all samples at once (output error), with a residual of {:.2g} %.",

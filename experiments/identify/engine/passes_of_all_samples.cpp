@@ -60,14 +60,14 @@ void Passes::look_for_input_noise() {
       if (!std::isfinite(gain)) lines.reset();  // what their ends could be is most of a narrow resonance
     }
     if (!(found.gain > worth_fitting)) return;
-    if (lines) found.deviation = likeliest_line_noise(*lines, exact.mean, found.deviation, false).inputs;
+    if (lines) found.deviation = likeliest_line_noise(*lines, exact.mean, found.deviation).inputs;
     noisy.input_noise = found.deviation;
     const NoisyInputFit fit = fit_with_input_noise(noisy);
     if (!fit.failure.empty()) return;
     found.moved = (fit.unknowns.mean - exact.mean).cwiseQuotient(exact.covariance.diagonal().cwiseSqrt());
     if (!lines) return;
     // At unknowns that are not those of exact inputs.
-    const LevelsOfNoise levels = likeliest_line_noise(*lines, fit.unknowns.mean, found.deviation, false);
+    const LevelsOfNoise levels = likeliest_line_noise(*lines, fit.unknowns.mean, found.deviation);
     if (!(levels.relative_deviation.maxCoeff() < well_known)) return;
     found.deviation = levels.inputs, found.outputs = levels.outputs, found.whiteness_p = levels.whiteness_p;
   } catch (const std::runtime_error&) {  // no motion there
@@ -90,9 +90,9 @@ void Passes::fit_inputs_noise() {
   constexpr double mostly = 0.5;
   if (fit.noise_scale < mostly)
     run_.remarks.push_back(
-        fmt::format("Most of the residual is the answer of the motion to the noise of the inputs. The noise "
-                    "of the outputs is taken for {:.2g} times the residual, so that the innovations are as "
-                    "large as both make them.",
+        fmt::format("Input noise, passed through the structure, causes most of the residual. The output "
+                    "noise is taken as {:.2g} times the residual. Both together then explain the size of the "
+                    "innovations.",
                     std::sqrt(fit.noise_scale)));
 }
 

@@ -239,8 +239,8 @@ Judgement judge(const Experiment& experiment, const Record& record, const Record
   if (alone)
     judgement.objections.emplace_back(
         "no_modal_analysis",
-        fmt::format("No modal analysis stands beside this result: {}. The filter was started from {}, and "
-                    "takes for noise the residual of its own motion.",
+        fmt::format("This result has no independent check. Modal analysis failed: {}. The filter started "
+                    "from {}. Its noise level is its own residual.",
                     found.modal_failure, experiment.prior.stiffness ? "[prior]" : "the beam"));
   const Identification& identification = found.identification;
   const std::string condition =

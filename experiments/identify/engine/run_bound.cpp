@@ -114,6 +114,12 @@ double to_bound(ComparedParameter& p, double factor) {
 
 }  // namespace
 
+double formal_deviation(const ComparedRun& run, std::size_t j) {
+  const auto place = static_cast<Eigen::Index>(j);
+  return std::abs(run.unknowns[j].slope(run.unknown_state.mean[place])) *
+         std::sqrt(run.unknown_state.covariance(place, place));
+}
+
 void set_interval(ComparedRun& run, std::size_t j, double spread) {
   const Unknown& unknown = run.unknowns[j];
   const auto place = static_cast<Eigen::Index>(j);
@@ -138,10 +144,33 @@ void widen(ComparedRun& run, std::size_t j, double factor) {
   factor = to_bound(run.parameters[j], factor);
   double& deviation = run.parameters[j].estimate.deviation;
   deviation *= factor;
-  const auto place = static_cast<Eigen::Index>(j);
-  const double formal = std::abs(run.unknowns[j].slope(run.unknown_state.mean[place])) *
-                        std::sqrt(run.unknown_state.covariance(place, place));
+  const double formal = formal_deviation(run, j);
   set_interval(run, j, formal > 0.0 ? deviation / formal : factor);  // of all that widened it
+}
+
+void hold_scatter_of_lines(ComparedRun& run) {
+  constexpr double white = 1e-3, worth_saying = 1.25;
+  constexpr double surely = 3.0;  // of one line of white noise with a probability of e^-9
+  const Eigen::VectorXd& deviations = run.description.deviations;
+  if (deviations.size() != static_cast<Eigen::Index>(run.parameters.size())) return;
+  const bool coloured = run.diagnostics && run.diagnostics->consistency &&
+                        run.diagnostics->consistency->whiteness_p_value < white;
+  const double least = coloured ? worth_saying : surely;
+  std::string widened;
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    const auto place = static_cast<Eigen::Index>(j);
+    const double slope = std::abs(run.unknowns[j].slope(run.unknown_state.mean[place])),
+                 factor = slope * deviations[place] / run.parameters[j].estimate.deviation;
+    if (!(factor > least) || !std::isfinite(factor)) continue;
+    widen(run, j, factor);
+    widened +=
+        fmt::format("{}{} by {:.2g}", widened.empty() ? "" : ", ", run.parameters[j].estimate.name, factor);
+  }
+  if (!widened.empty())
+    run.remarks.push_back(
+        "The lines of the spectrum that determine these scatter by more than noise of that level, as under "
+        "forces that are not measured. Intervals are widened: " +
+        widened + ".");
 }
 
 namespace {

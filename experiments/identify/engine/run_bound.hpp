@@ -15,6 +15,9 @@ namespace beamid::experiments {
 
 // 95 % intervals of parameters, as wide as the record's noise asks for.
 
+/// Standard deviation of parameter j by the covariance of the state [its unit], before anything widens it.
+double formal_deviation(const ComparedRun& run, std::size_t j);
+
 /// Of parameter j, from its deviation in the state, `spread` times as wide; the parameter's own form makes it
 /// lopsided.
 void set_interval(ComparedRun& run, std::size_t j, double spread);
@@ -32,6 +35,11 @@ void widen(ComparedRun& run, std::size_t j, double factor);
 /// deviation that the filter assumes: near the mode (noise_near_mode.hpp) or, of a forced record, where each
 /// parameter is determined (noise_in_estimates.hpp). A remark states the factors. Never narrower.
 void widen_intervals(const RunContext& context, ComparedRun& run);
+
+/// Where innovations are not white, or the factor is 3 and more: at least what the scatter of the lines makes
+/// of each parameter (DescriptionTests::deviations), which counts forces that nobody measures. A remark
+/// states the factors.
+void hold_scatter_of_lines(ComparedRun& run);
 
 /// Deviations of the unknowns [their units] that no unbiased estimate falls below, the start unknown;
 /// infinite where the record does not determine them. What is known of nuisance parameters, and of how far a

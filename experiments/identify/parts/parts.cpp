@@ -115,9 +115,7 @@ void widen_by_innovations(ComparedRun& run) {
   if (!(found.mean_normalised_square > std::max(1.0, found.upper_95))) return;
   const double factor = std::sqrt(found.mean_normalised_square);
   for (std::size_t j = 0; j < run.parameters.size(); ++j) {
-    const auto place = static_cast<Eigen::Index>(j);
-    const double deviation = factor * std::sqrt(run.unknown_state.covariance(place, place)) *
-                             std::abs(run.unknowns[j].slope(run.unknown_state.mean[place]));
+    const double deviation = factor * formal_deviation(run, j);
     if (!(deviation > run.parameters[j].estimate.deviation)) continue;
     run.parameters[j].estimate.deviation = deviation;
     set_interval(run, j, factor);

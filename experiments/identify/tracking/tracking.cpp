@@ -440,7 +440,8 @@ Tracking track(const VectorXd& signal, double start, double interval, const Trac
     const auto estimates = smoothed(ringing, span, initial, levels.noise);
     enter(estimates, first, ringing.centre_hz, result);
     if (plateau && std::ssize(estimates) == last - first + 1)
-      result.plateaus.push_back(plateau_of(ringing, estimates, first, levels));
+      if (Plateau found = plateau_of(ringing, estimates, first, levels); found.rings())
+        result.plateaus.push_back(std::move(found));
   }
   result.beat = beat_sentence(ringing, result.plateaus);
   return result;

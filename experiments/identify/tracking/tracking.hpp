@@ -87,6 +87,12 @@ struct Plateau {
   double noise_relative_deviation = 0;          ///< of that estimate; infinite where the record does not tell
   double walk = 0;                              ///< [1/sqrt(s)]
   double force = 0;                             ///< of unmeasured excitation [unit/s2 sqrt(s)]
+
+  /// Whether more than noise rings: a span before a release has a frequency of its own, of the band's noise.
+  bool rings() const {
+    return amplitude_from > 2 * noise || amplitude_to > 2 * noise ||
+           frequency_deviation_hz < 0.01 * frequency_hz;
+  }
 };
 
 struct Tracking {

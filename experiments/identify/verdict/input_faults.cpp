@@ -75,6 +75,7 @@ struct InputFault {
   std::string text, advice;
   Index unknown = 0;
   double moved = 0.0;      ///< in deviations as they are reported
+  VectorXd moves = {};     ///< of all unknowns, in deviations of their state (q); empty: not known
   double explained = 0.0;  ///< of the squares that are left
   double surely = 0.0;     ///< its size in its own standard deviations
   bool is_sure = true;     ///< neither chance nor of the size of what an interpolation does
@@ -91,7 +92,8 @@ constexpr double mostly = 0.5;  // of the squares left: they are no noise then, 
 InputFault clock_fault(const RunContext& context, const ComparedRun& run, const LikeliestClock& found,
                        double lag) {
   InputFault fault;
-  fault.moved = found.step.shift.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
+  fault.moves = found.step.shift;
+  fault.moved = fault.moves.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
   fault.explained = 1.0 - found.step.left_share;
   fault.is_sure = std::abs(lag) > material * context.analysis.record.interval();
   return fault;
@@ -157,24 +159,12 @@ std::optional<InputFault> of_noise(const RunContext& context, const ComparedRun&
   InputFault fault;
   fault.name = "input_noise";
   const auto [text, stated] = noise_texts(context.analysis.record, run.likeliest_input_noise->deviation);
-  fault.text = text + " would explain the residual";
+  fault.text = "The residual looks like " + text;
   fault.advice = "State it: [noise] " + stated + ".";
-  const VectorXd moved = run.likeliest_input_noise->moved;
-  if (moved.size() > 0) fault.moved = moved.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
+  fault.moves = run.likeliest_input_noise->moved;
+  if (fault.moves.size() > 0)
+    fault.moved = fault.moves.cwiseAbs().maxCoeff(&fault.unknown) / run.interval_factor;
   return fault;
-}
-
-// Noise that may be there, or may be what the model lacks: intervals hold the estimates with it, too.
-void hold_estimates_with_noise(ComparedRun& run) {
-  const VectorXd& moved = run.likeliest_input_noise->moved;
-  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
-    const auto at = static_cast<Index>(j);
-    const double formal = std::abs(run.unknowns[j].slope(run.unknown_state.mean[at])) *
-                          std::sqrt(run.unknown_state.covariance(at, at)),
-                 factor =
-                     factor_to_hold(0.0, run.parameters[j].estimate.deviation, moved[at] * formal, formal);
-    if (factor > 1.0) widen(run, j, factor);
-  }
 }
 
 // Noise that the record shows and the estimates allow for.
@@ -198,7 +188,8 @@ bool shows_input_noise(const RunContext& context, const ComparedRun& run) {
   const double gain = run.likeliest_input_noise->gain;
   for (const auto& clock : {of_rates(context, run), of_lags(context, run)})
     if (clock && (clock->explained > mostly || !(0.5 * clock->surely * clock->surely < gain))) return false;
-  return std::ranges::all_of(run.faults, [&](const DescriptionFault& one) { return one.gain < gain; });
+  return std::ranges::all_of(run.description.faults,
+                             [&](const DescriptionFault& one) { return one.gain < gain; });
 }
 
 void judge_inputs(const RunContext& context, ComparedRun& run) {
@@ -217,26 +208,30 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   constexpr double highly_significant = 10.0, material_move = 1.0;  // deviations
   const bool moves =
       fault->moved > quantile_95 || (fault->moved > material_move && fault->surely > highly_significant);
-  const bool excluded = (moves && fault->is_sure && !approximate) || fault->explained > mostly;
+  const bool is_immaterial = leaves_next_to_nothing(run) &&
+                             (fault->moves.size() == 0 || !farthest_move(run, fault->moves).is_material);
+  const bool excluded =
+      !is_immaterial && ((moves && fault->is_sure && !approximate) || fault->explained > mostly);
   // Noise of an input is named where the intervals hold it, too: stated, it makes them narrower. So is a
   // clock that differs by ten of its deviations and makes a tenth of the residual.
   constexpr double good_part = 0.1;
   const bool worth_stating = fault->moved > 1.0 || fault->name == "input_noise" ||
                              (fault->surely > highly_significant && fault->explained > good_part);
   if (!excluded && (approximate || !worth_stating)) return;
-  if (fault->name == "input_noise" && fault->moved > 1.0 && !excluded) {
-    hold_estimates_with_noise(run);
+  // Noise of an input may be there, or may be what the model lacks.
+  if ((fault->name == "input_noise" || is_immaterial) && fault->moved > 1.0 && !excluded) {
+    hold_moved(run, fault->moves);
     fault->advice += " Intervals are widened to hold the estimates with it.";
   }
   const std::string explained =
       fault->explained > mostly
-          ? fmt::format(" and makes {:.0f} % of the residual, in squares", 100.0 * fault->explained)
+          ? fmt::format(" and explains {:.0f} % of the residual, in squares", 100.0 * fault->explained)
           : "";
   const bool said = run.status == ComparedRun::Status::contradicted;  // by all that is left
   run.objections.insert(run.objections.begin() + (said ? 1 : 0),
                         {fault->name,
-                         fmt::format("{}{}, or the model lacks what looks so: allowed for, it moves {} by "
-                                     "{:.2g} of its standard deviations{}. {}",
+                         fmt::format("{}{}. Allowing for it moves {} by {:.2g} standard deviations{}. {} A "
+                                     "model error can look the same.",
                                      excluded && !said ? "CONTRADICTED: " : "", fault->text,
                                      run.parameters[static_cast<std::size_t>(fault->unknown)].estimate.name,
                                      fault->moved, explained, fault->advice),

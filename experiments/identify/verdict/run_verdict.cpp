@@ -158,7 +158,7 @@ void judge_settling(ComparedRun& run) {
   constexpr double many = 5.0;
   if (!(run.last_move > many)) return;
   const std::string moved =
-      fmt::format("the last one moved an unknown by {:.2g} of its standard deviations", run.last_move);
+      fmt::format("the last pass moved an unknown by {:.2g} standard deviations", run.last_move);
   run.status = ComparedRun::Status::contradicted;
   run.reason = "the passes have not settled: " + moved;
   run.object({"not_settled",
@@ -207,14 +207,15 @@ void judge_certainty(ComparedRun& run) {
     if (p.overconfidence < far_surer) names += (names.empty() ? "" : ", ") + p.estimate.name;
   }
   if (names.empty()) return;
-  const std::string reason = "the filter is more than twice as sure of " + names + " as the record allows";
+  const std::string reason = "the standard deviation of " + names +
+                             " is less than half of what the record allows (Cramer-Rao bound)";
   run.status = ComparedRun::Status::contradicted;
   run.reason = reason;
   run.object({"overconfident",
               "CONTRADICTED: " + reason +
-                  ", so that the truth may lie many of its intervals away. Expected nearer initial "
-                  "estimates, more passes ([compare] passes), a reduction in place of the mesh, or "
-                  "`identify` in place of `compare`, which uses all samples at once.",
+                  ". The filter is overconfident: the true value may lie far outside the interval. Expected "
+                  "nearer initial estimates, more passes ([compare] passes), a reduction in place of the "
+                  "mesh, or `identify` in place of `compare`, which uses all samples at once.",
               least, far_surer});
 }
 
@@ -227,6 +228,7 @@ void judge_model(const RunContext& context, ComparedRun& run) {
   judge_settling(run);
   judge_certainty(run);
   judge_motion_left(context, run);  // what the model lacks goes before: it explains the certainty
+  hold_scatter_of_lines(run);
   if (!judge_faults(run)) judge_inputs(context, run);
   judge_decay(context, run);
   judge_moved_mass(run);
@@ -276,6 +278,38 @@ void judge_channels(const RunContext& context, ComparedRun& run) {
 
 double factor_to_hold(double estimate, double deviation, double other, double other_deviation) {
   return (std::abs(estimate - other) / quantile_95 + other_deviation) / deviation;
+}
+
+Move farthest_move(const ComparedRun& run, const VectorXd& moved) {
+  constexpr double material = 1e-3;  // of a value
+  Move most;
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    const auto at = static_cast<Index>(j);
+    const Unknown& unknown = run.unknowns[j];
+    const Estimate& estimate = run.parameters[j].estimate;
+    const double from = run.unknown_state.mean[at],
+                 to = from + moved[at] * std::sqrt(run.unknown_state.covariance(at, at)),
+                 change = std::abs(unknown.to_physical(to) - unknown.to_physical(from)),
+                 deviations = change / estimate.deviation;
+    if (deviations > most.deviations) most.deviations = deviations, most.unknown = j;
+    most.is_material =
+        most.is_material || (deviations > quantile_95 && change > material * std::abs(estimate.value));
+  }
+  return most;
+}
+
+void hold_moved(ComparedRun& run, const VectorXd& moved) {
+  for (std::size_t j = 0; j < run.parameters.size(); ++j) {
+    const double formal = formal_deviation(run, j),
+                 factor = factor_to_hold(0.0, run.parameters[j].estimate.deviation,
+                                         moved[static_cast<Index>(j)] * formal, formal);
+    if (factor > 1.0) widen(run, j, factor);
+  }
+}
+
+bool leaves_next_to_nothing(const ComparedRun& run) {
+  constexpr double next_to_nothing = 0.1;  // %
+  return run.misfit_percent < next_to_nothing;
 }
 
 void judge_what_is_said(ComparedRun& run) {

@@ -32,6 +32,24 @@ void judge_what_is_said(ComparedRun& run);
 /// By which a deviation grows until the 95 % interval of an estimate holds that of another.
 double factor_to_hold(double estimate, double deviation, double other, double other_deviation);
 
+// Estimates that a change of the description, of a clock or of an input's noise would move.
+
+/// The move that matters most.
+struct Move {
+  double deviations = 0.0;  ///< as they are reported
+  std::size_t unknown = 0;
+  bool is_material = false;  ///< whether one leaves its interval and moves by more than 0.1 % of its value
+};
+/// @param moved of the unknowns, in deviations of their state (q)
+Move farthest_move(const ComparedRun& run, const Eigen::VectorXd& moved);
+
+/// Deviations grow until the intervals hold the estimates so moved, too. @param moved likewise
+void hold_moved(ComparedRun& run, const Eigen::VectorXd& moved);
+
+/// Whether what is left is too little to speak against a description, where no move is material: less than a
+/// thousandth of the motion. A record that is simulated without noise leaves the interpolation of its input.
+bool leaves_next_to_nothing(const ComparedRun& run);
+
 // What a reduction does by itself to what is identified with it (reduction_bias.cpp).
 
 /// Predicted relative errors of the unknowns (q), from the frequencies that the reduced model has at its

@@ -1,5 +1,3 @@
-#include "experiments/modal/study/decay_polish.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>

@@ -59,6 +59,29 @@ bool is_driven(const Record& record) {
   return false;
 }
 
+void put_strongest_first(Record& record) {
+  std::vector<Index> outputs;
+  for (Index i = 0; i < record.samples.rows(); ++i)
+    if (!is_input(record.channels[static_cast<std::size_t>(i)].quantity)) outputs.push_back(i);
+  if (outputs.size() < 2) return;
+  const auto channel = [&](Index row) -> Channel& { return record.channels[static_cast<std::size_t>(row)]; };
+  const auto size = [&](Index row) {
+    const Eigen::ArrayXd signal = record.samples.row(row).transpose().array();
+    const double count = std::max<double>(1.0, static_cast<double>(signal.isFinite().count())),
+                 mean = signal.isFinite().select(signal, 0.0).sum() / count;
+    return signal.isFinite().select((signal - mean).square(), 0.0).sum() / count;
+  };
+  Index strongest = outputs.front();
+  for (const Index row : outputs)
+    if (channel(row).quantity == channel(outputs.front()).quantity && size(row) > size(strongest))
+      strongest = row;
+  record.remarks.push_back(
+      fmt::format("Of {} channels '{}' moves most: it is followed. --column follows another.", outputs.size(),
+                  channel(strongest).name));
+  std::swap(channel(outputs.front()), channel(strongest));
+  record.samples.row(outputs.front()).swap(record.samples.row(strongest));
+}
+
 std::vector<RecordLine> record_lines(const Eigen::MatrixXd& samples, double interval) {
   constexpr Index fewest = 128;
   constexpr LineSettings line{.above_noise = 6, .above_valley = 2, .least = 0.02};
@@ -131,6 +154,10 @@ std::pair<double, double> decay_band(const Eigen::MatrixXd& samples, double inte
 }
 
 void check_band(std::pair<double, double> band_hz, double interval, Eigen::Index count) {
+  constexpr Eigen::Index fewest = 16;
+  if (count < fewest)
+    throw std::invalid_argument(
+        fmt::format("a record of {} samples; modal analysis expects {} at least", count, fewest));
   const auto [from, to] = band_hz;
   if (from >= 0 && from < to && to < 0.5 / interval && to * interval * static_cast<double>(count) > 2) return;
   throw std::invalid_argument(fmt::format(

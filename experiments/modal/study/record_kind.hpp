@@ -23,6 +23,10 @@ bool is_struck(const Record& record);
 /// its samples above a twentieth of its largest. A single hit does not.
 bool is_driven(const Record& record);
 
+/// The channel of motion that moves most, of those that measure what the first does, goes before the others:
+/// a command that follows one channel follows it, which a remark states.
+void put_strongest_first(Record& record);
+
 // The lines of a record, those of its first moments included.
 
 struct RecordLine {

@@ -206,8 +206,8 @@ Table bound_table(const Identifiability& found) {
                p.nuisance ? "known beforehand" : to_string(p.verdict)});
   }
   table.note =
-      "Bound: Cramer-Rao, on the standard deviation of any unbiased estimate. Others known: the same were "
-      "all other parameters known. 95 %: what an interval from the best estimate would be.";
+      "Bound: Cramer-Rao, on the standard deviation of any unbiased estimate. Others known: the bound with "
+      "all other parameters known. 95 %: interval of an estimate at the bound.";
   if (of_deviation)
     table.note += " Of a parameter that is zero per cent are of its prior standard deviation.";
   return table;

@@ -134,8 +134,8 @@ std::string length_text(const Identifiability& found) {
   }
   if (found.slowest_decay > 0.0)
     text += fmt::format(
-        "{}Mode 1 decays with a time constant of {:.3g} s: after three of them 91 % of what a free decay can "
-        "ever show of its damping is there; this record has {:.2g}.",
+        "{}Mode 1 decays with a time constant of {:.3g} s. Three time constants contain 91 % of the "
+        "information about damping. This record has {:.2g}.",
         text.empty() ? "" : " ", found.slowest_decay, found.duration / found.slowest_decay);
   return text;
 }

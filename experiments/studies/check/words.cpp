@@ -99,10 +99,9 @@ bool add_conclusions(const ModelCheck& check, const std::vector<Explanation>& al
       sentences.push_back(fmt::format("Nearest of them: {}.", change_text(check, *implausible[0])));
   }
   if (const auto open = with(all, ExplanationVerdict::undetermined); !open.empty() && explains.empty())
-    sentences.push_back(
-        fmt::format("Not determined by these modes, which {} would reproduce too with intervals wider than "
-                    "what is plausible: {}.",
-                    open.size() == 1 ? "this one" : "these", names_of(check, open)));
+    sentences.push_back(fmt::format("Not determined by these modes: {}. {} the plausible range.",
+                                    names_of(check, open),
+                                    open.size() == 1 ? "Its interval exceeds" : "Their intervals exceed"));
   return !explains.empty();
 }
 
@@ -146,8 +145,8 @@ bool add_exchanged(const ModelCheck& check, std::vector<std::string>& sentences)
   if (text.empty()) return false;
   text[0] = static_cast<char>(std::toupper(text[0]));
   sentences.push_back(text +
-                      " explains it: more than careful work gets wrong, as much as a wrong number in the "
-                      "file does, or the record of another structure.");
+                      " explains it. The change is implausibly large. Check for a wrong number in the file, "
+                      "or a record of another structure.");
   return true;
 }
 
@@ -193,8 +192,7 @@ void add_twins(const ModelCheck& check, std::vector<std::string>& sentences) {
     groups += (groups.empty() ? "" : "; ") + joined(names);
   }
   if (!groups.empty())
-    sentences.push_back(fmt::format(
-        "One and the same to these modes, which all of a group change in one proportion: {}.", groups));
+    sentences.push_back(fmt::format("Indistinguishable by these modes, within each group: {}.", groups));
 }
 
 }  // namespace
@@ -213,8 +211,8 @@ std::vector<std::string> conclusions(const ModelCheck& check) {
   const bool several = check.structures.size() > 1;
   if (check.right) {
     sentences.push_back(
-        fmt::format("The {} as described agree{} with what was identified: {}. No change is "
-                    "called for; the table shows what each could be unseen.",
+        fmt::format("The {} as described agree{} with what was identified: {}. No change is needed. The "
+                    "table lists how far each quantity could differ without being detected.",
                     what, several ? "" : "s", size));
   } else {
     sentences.push_back(fmt::format("The {} as described do{} not agree with what was identified: {}.", what,

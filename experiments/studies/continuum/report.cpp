@@ -243,8 +243,9 @@ FrequencyResponses respond_to_frequencies(const Experiment& experiment, const Pr
   }
   if (between > 0)
     all.notes.push_back(fmt::format(
-        "{} of {} resonances lie between two of the {} frequencies, which show less than half of "
-        "their height: neither frf.csv nor the figure has it, the table has. More points show it.",
+        "{} of {} resonances lie between two of the {} frequencies. The frequency grid shows less than half "
+        "of these peaks. The table has their true height; frf.csv and the figure do not. A finer grid shows "
+        "them.",
         between, resonances, all.frequency_hz.size()));
   return all;
 }

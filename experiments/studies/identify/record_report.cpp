@@ -179,9 +179,8 @@ std::string unmodelled_text(const RecordIdentification& found) {
   const AmplitudeSections& by = found.sections;
   if (by.damping.varies() || by.frequency.varies())
     return fmt::format(
-        ". With the amplitude {} (fits in {} sections). The filter's intervals are too short for that, and "
-        "are widened to hold the values of 95 % of the decay, by {:.3g} for frequency and K, {:.3g} for "
-        "damping",
+        ". With the amplitude {} (fits in {} sections). The intervals were widened to cover 95 % of the "
+        "decay: by {:.3g} (frequency, K) and {:.3g} (damping)",
         variation_text(by), by.sections.size(), found.frequency_factor(), found.damping_factor());
   if (!found.modal.companions.empty() && found.modal_failure.empty()) {
     const double off = std::abs(found.identification.found.damping_ratio() - found.modal.damping_ratio) /
@@ -191,8 +190,14 @@ std::string unmodelled_text(const RecordIdentification& found) {
         "interval of the damping ratio",
         off);
   }
-  return ". The record holds motion that the model does not have; what of it lies near the mode is counted "
-         "in the intervals";
+  return ". The record contains motion that the model lacks. The intervals include the part near the mode";
+}
+
+// White innovations, with neither a second mode nor variation with the amplitude: their size is the noise's.
+bool shows_noise_alone(const RecordIdentification& found) {
+  const bool second = !found.modal.companions.empty() && found.modal_failure.empty();
+  return found.consistency->white() && !second && !found.sections.damping.varies() &&
+         !found.sections.frequency.varies();
 }
 
 std::string verdict(const RecordIdentification& found) {
@@ -204,6 +209,17 @@ std::string verdict(const RecordIdentification& found) {
   if (c.windows.maxCoeff() < c.window_lower_95)
     return "smaller all along than they should be. The noise assumed is larger than the record's, and the "
            "intervals are too wide";
+  if (shows_noise_alone(found)) {
+    const double size = c.mean_normalised_square, least = c.windows.minCoeff(), most = c.windows.maxCoeff();
+    if (least > c.window_upper_95 && least >= size * c.window_lower_95 && most <= size * c.window_upper_95)
+      return fmt::format(
+          "white and stationary, but about {:.4g} times too large: the noise {} is too small by a factor of "
+          "{:.2g} (its root)",
+          size, found.noise_from_record[0] ? "estimated" : "stated", std::sqrt(size));
+    if (most <= c.window_upper_95)
+      return "white, but smaller than they should be in part of the record. The noise is smaller there than "
+             "assumed; unmodelled motion does not show";
+  }
   const char* what = c.white()            ? "white, but their size changes along the record"
                      : c.size_is_steady() ? "stationary, but not white"
                                           : "neither white nor stationary";
@@ -329,8 +345,8 @@ Results report(const Experiment& experiment, const Record& record, const std::st
     results.limitation(consistency_text(found));
   const std::vector<std::string> names = record.channel_names();
   if (found.diagnostics) results.paragraph(words(*found.diagnostics, names));
-  if (const std::string text = failure_sentences(found.identification.run.events); !text.empty())
-    results.limitation("The filter had trouble (--on-failure states what it then does). " + text);
+  if (const std::string text = failures_paragraph(found.identification.run.events); !text.empty())
+    results.limitation(text);
   results.paragraph(noise_text(record, found));
   if (experiment.is_described)
     results.paragraph(fmt::format(

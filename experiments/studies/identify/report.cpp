@@ -250,8 +250,7 @@ Results identification_report(const Experiment& experiment, const Comparison& fo
   std::vector<std::string> outputs;
   for (const Eigen::Index i : output_channels(record))
     outputs.push_back(record.channels[static_cast<std::size_t>(i)].name);
-  if (const std::string text = failure_sentences(run.run.events); !text.empty())
-    results.limitation("The filter had trouble (--on-failure states what it then does). " + text);
+  if (const std::string text = failures_paragraph(run.run.events); !text.empty()) results.limitation(text);
   if (run.batch) results.table(batch_table(run));
   if (run.diagnostics) {
     results.paragraph(words(*run.diagnostics, outputs));

@@ -81,8 +81,8 @@ Table channel_table(const Inspection& found) {
                c.frequency_hz > 0 ? c.frequency_hz : none, static_cast<double>(c.events.size())});
   }
   table.note =
-      "Offset: the median. Drift: change of a fitted line over the record. Noise: standard deviation of what "
-      "is as broad as white noise in the quietest quarter. f: the strongest frequency.";
+      "Offset: the median. Drift: change of a fitted line over the record. Noise: standard deviation of the "
+      "broadband part in the quietest quarter of the record. f: the strongest frequency.";
   return table;
 }
 

@@ -95,7 +95,8 @@ Results report(const Inspection& found) {
   results.paragraph(list.empty() ? "No problems found." : list);
   const std::string lines = record_table_text(found);
   results.values["record_table"] = lines;
-  results.paragraph("What to write into an experiment file, with what is known put for each \"...\":\n\n" +
+  const bool open = lines.find("...") != std::string::npos;
+  results.paragraph(fmt::format("Table for an experiment file{}:\n\n", open ? "; replace each \"...\"" : "") +
                     lines);
   results.figures = inspection_figures(found);
   return results;
@@ -133,11 +134,10 @@ void add_channel_warnings(const Inspection& found, const InspectedChannel& c, st
     return;
   }
   if (!d.spikes.empty())
-    all.push_back(
-        fmt::format("{}: {} spike{}, the first of {} at {}: no motion of anything, what lies around it "
-                    "is not moved by it.",
-                    name, d.spikes.size(), d.spikes.size() == 1 ? "" : "s",
-                    size_of(c, d.spikes.front().value), at(d.spikes.front().first)));
+    all.push_back(fmt::format("{}: {} spike{}{} at {}. Neighbouring samples do not move, so {} no motion.",
+                              name, d.spikes.size(), d.spikes.size() == 1 ? ", " : "s, the first ",
+                              size_of(c, d.spikes.front().value), at(d.spikes.front().first),
+                              d.spikes.size() == 1 ? "it is" : "they are"));
   if (!d.clipped.empty())
     all.push_back(fmt::format("{}: clipped at {}, {} run{} of {} samples in all, first at {}.", name,
                               size_of(c, d.clipped.front().value), d.clipped.size(),

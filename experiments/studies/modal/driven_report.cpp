@@ -120,8 +120,8 @@ Table driven_mode_table(const DrivenStudy& study, const std::string& suffix) {
   table.note = one_input && study.inputs[0].quantity == Quantity::force
                    ? "The participation is phi_channel phi_force / modal mass."
                : one_input
-                   ? "The participation is what a mode's displacement at the channel is of the base's: "
-                     "those of all modes sum to 1."
+                   ? "Participation: displacement of the mode at the channel relative to the base. Over all "
+                     "modes they sum to 1."
                    : "Shapes are those of the input to which a mode answers most; results.json has "
                      "the participations of all.";
   return table;

@@ -99,8 +99,8 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
           ? "Amplitudes are those at the beginning. Standard deviations include the noise near each mode, "
             "not damping that depends on amplitude."
           : fmt::format(
-                "Standard deviations {}. Over bound: divided by what no unbiased estimate of so long a "
-                "record falls below, however little noise it has.",
+                "Standard deviations {}. Over bound: divided by the lower bound of an unbiased estimate for "
+                "this record length without noise.",
                 found.mode_by_mode ? "from the likelihood of each mode's band"
                                    : "from the scatter of the correlations between parts of the record");
   return table;

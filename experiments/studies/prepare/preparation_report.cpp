@@ -125,14 +125,15 @@ std::string first_words(const PreparedRecord& prepared, const std::string& name)
 }
 
 /// "a clean decay of its dominant mode, 11.2 Hz, ..."; empty where there is no change to tell.
-std::string cost_words(const DominantCost& found) {
+std::string cost_words(const DominantCost& found, const RecordFormat& format) {
   if (!found.cost || std::isnan(found.cost->together.front().whole.frequency)) return "";
   const ModalChange& change = found.cost->together.front().whole;
   return fmt::format(
       "a clean decay of its dominant mode, {:.4g} Hz, all steps together change the frequency by {:+.4f} % "
-      "and the damping ratio by {:+.3f} %; `beamid prepare` lists each.",
+      "and the damping ratio by {:+.3f} %{}.",
       found.cost->frequency_hz, std::abs(change.frequency) < 5e-7 ? 0 : 100 * change.frequency,
-      std::abs(change.damping_ratio) < 5e-6 ? 0 : 100 * change.damping_ratio);
+      std::abs(change.damping_ratio) < 5e-6 ? 0 : 100 * change.damping_ratio,
+      format.preparation.front().place.file.empty() ? "" : "; `beamid prepare` lists each");
 }
 
 /// Evenly sampled stamps are written as such, whatever their file rounded them to; instants at which a sample
@@ -267,7 +268,7 @@ void add_preparation(Results& results, const PreparedRecord& prepared, const Rec
   if (!format.preparation.empty()) {
     const DominantCost found = dominant_cost(prepared, format);
     results.values["preparation"] = values(format, found);
-    if (const std::string cost = cost_words(found); !cost.empty()) text += " On " + cost;
+    if (const std::string cost = cost_words(found, format); !cost.empty()) text += " On " + cost;
   }
   if (!text.empty()) results.paragraph("Record: " + text);
 }
@@ -282,7 +283,7 @@ void add_cost(Results& results, const std::string& record_name, const PreparedRe
   Json one{{"record", record_name}};
   one.update(values(format, found));
   results.values["preparations"].push_back(std::move(one));
-  if (const std::string cost = cost_words(found); !cost.empty())
+  if (const std::string cost = cost_words(found, format); !cost.empty())
     results.paragraph(fmt::format("{}, prepared: on {}", record_name, cost));
 }
 

@@ -220,7 +220,7 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
   for (const SensorNoise& one : study.noise)
     if (one.explains_too_much())
       results.warning(
-          fmt::format("{}: {} of what it read is taken for noise that is not stated, {:.3g} {}. The "
+          fmt::format("{}: {} of its signal is treated as noise, which was not specified: {:.3g} {}. The "
                       "structure, a sensor's place or unit, or the places of the unknown forces are not "
                       "as described.",
                       one.name, share(one.deviation, one.root_mean_square), one.deviation, one.unit),
@@ -290,8 +290,8 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
   if (square > SensingStudy::largest_square)
     results.warning(
         fmt::format(
-            "From sample to sample the sensors read {:.2g} times as far from what is expected of them "
-            "as they should: structure, sensors or forces are not as described.",
+            "One-step prediction errors are {:.2g} times as large as specified: structure, sensors or forces "
+            "are not as described.",
             std::sqrt(square)),
         true);
   else if (study.coloured())
@@ -305,10 +305,8 @@ void add_sensing_verdict(const SensingStudy& study, Results& results) {
         study.correlated());
   if (square <= SensingStudy::largest_square && study.noisier_than_stated())
     results.warning(
-        fmt::format("From sample to sample the sensors read {:.2f} times as far from what is expected of "
-                    "them as they should. The noise is larger than stated, or forces are. Standard "
-                    "deviations and intervals are too small by "
-                    "as much.",
+        fmt::format("One-step prediction errors are {:.2f} times as large as specified. The noise is larger "
+                    "than stated, or forces are. Standard deviations and intervals are too small by as much.",
                     std::sqrt(square)));
 }
 

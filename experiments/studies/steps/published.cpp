@@ -85,8 +85,9 @@ std::string possible_text(const BehindPublished& found) {
               ? fmt::format("the discretisation changed it by {:+.2g} %", 100.0 * (times - 1.0))
               : fmt::format("the published value is {:.3g} times the true one", times);
   return text + fmt::format(
-                    ". The published value's last digit allows {:.4g} to {:.4g} %. What the discretisation "
-                    "adds to a damping ratio depends little on it, so that its error is passed on whole.",
+                    ". The published value's last digit allows {:.4g} to {:.4g} %. The added damping depends "
+                    "little on the damping ratio, so the rounding error of the published value passes on "
+                    "unchanged.",
                     100.0 * found.lower, 100.0 * found.upper);
 }
 

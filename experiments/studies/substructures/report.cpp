@@ -7,6 +7,7 @@
 
 #include "experiments/config/description.hpp"
 #include "experiments/identify/engine/measured_force.hpp"
+#include "experiments/identify/engine/run_bound.hpp"
 #include "experiments/results/forest_plot.hpp"
 #include "experiments/signal/toolbox.hpp"
 
@@ -38,12 +39,8 @@ double percent_of(double part, double whole) {
 
 // As the filter itself has it, not widened by what the record shows: that of 1991 knew no better.
 double own_deviation(const ComparedRun& run, const std::string& name) {
-  for (std::size_t j = 0; j < run.unknowns.size(); ++j) {
-    const auto place = static_cast<Eigen::Index>(j);
-    if (run.unknowns[j].name == name)
-      return std::abs(run.unknowns[j].slope(run.unknown_state.mean[place])) *
-             std::sqrt(run.unknown_state.covariance(place, place));
-  }
+  for (std::size_t j = 0; j < run.unknowns.size(); ++j)
+    if (run.unknowns[j].name == name) return formal_deviation(run, j);
   return std::nan("");
 }
 

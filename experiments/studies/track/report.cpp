@@ -266,12 +266,12 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
   results.heading(record_name);
   results.paragraph(
       fmt::format("{}: {} samples from {:.4f} to {:.4f} s at {:.2f} Hz. One mode from {:.4g} to {:.4g} Hz "
-                  "({}) is followed at {:.1f} Hz; its stiffness and damping wander {}.",
+                  "({}) is tracked at {:.1f} Hz. The random walk of its stiffness and damping is {}.",
                   record_name, record.size(), record.time[0], record.time[record.size() - 1],
                   1.0 / record.interval(), found.band_hz.first, found.band_hz.second,
                   settings.band_hz ? "as given" : "from the record", 1.0 / found.interval,
-                  settings.walk ? fmt::format("by {:g} per square root of a second, as given", *settings.walk)
-                                : std::string("as much as is likeliest on each plateau")));
+                  settings.walk ? fmt::format("{:g} per square root of a second, as given", *settings.walk)
+                                : std::string("the most likely one on each plateau")));
   if (found.sway > 0)
     results.paragraph(
         fmt::format("Below the band the signal sways by {:.2g} {} (root mean square), {:.2g} times the "
@@ -288,8 +288,7 @@ Results report(const TrackSettings& settings, const Record& record, const Channe
   results.paragraph(fmt::format(
       "{} alarms: the squares of {} innovations in succession above {:.1f}, which in a record without "
       "changes and with white noise of {:.3g} {} happens with a probability below {:g}. Alarms nearer to "
-      "each other than {:g} cycles belong to one change; while it lasts the band of history.csv is what so "
-      "few samples determine.",
+      "each other than {:g} cycles belong to one change. During the change history.csv has wide intervals.",
       found.alarms.size(), found.test_samples, found.threshold, found.noise, si_unit(channel.quantity),
       settings.false_alarms, settings.shortest_cycles));
   results.figures.push_back(tracking_figure(found, channel));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
+#include <cstdlib>
 #include <limits>
 
 namespace beamid::experiments::least_squares_test {
@@ -19,6 +21,21 @@ TEST(LeastSquares, SolvesColumnsOfAnyUnit) {
   const MatrixXd x = least_squares(a, b);
   EXPECT_NEAR(x(0), 2e-6, 1e-18);
   EXPECT_NEAR(x(1), 3e3, 1e-9);
+}
+
+// Oracle: the factors of all rows at once. Many rows are taken in blocks.
+TEST(LeastSquares, SolvesManyRowsAsFew) {
+  std::srand(5);
+  const MatrixXd a = MatrixXd::Random(20'000, 7), b = MatrixXd::Random(20'000, 2);
+  const MatrixXd all = a.colPivHouseholderQr().solve(b);
+  EXPECT_LT((least_squares(a, b) - all).norm(), 1e-13 * all.norm());
+  const MatrixXcd z = MatrixXcd::Random(20'000, 3), y = MatrixXcd::Random(20'000, 1);
+  const MatrixXcd whole = z.colPivHouseholderQr().solve(y);
+  EXPECT_LT((complex_least_squares(z, y) - whole).norm(), 1e-13 * whole.norm());
+  MatrixXd twice(20'000, 2);  // a column that repeats another
+  twice << a.col(0), a.col(0);
+  const MatrixXd shared = least_squares(twice, b);
+  EXPECT_LT((twice * shared - a.col(0) * least_squares(a.leftCols(1), b)).norm(), 1e-10);
 }
 
 TEST(LeastSquares, HasAnAnswerWithoutColumnsAndRefusesWhatIsNotFinite) {

@@ -172,7 +172,7 @@ TEST(Verdict, NoDeviationIsBelowTheBound) {
   }
   EXPECT_LT(least, 0.5);
   EXPECT_EQ(run.status, ComparedRun::Status::contradicted);
-  EXPECT_THAT(run.reason, HasSubstr("more than twice as sure of bending_stiffness"));
+  EXPECT_THAT(run.reason, HasSubstr("standard deviation of bending_stiffness"));
 }
 
 // A root as stiff as 1e9 N m/rad stores no energy: no record tells it from a stiffer one.

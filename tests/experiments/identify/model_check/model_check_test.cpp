@@ -90,8 +90,8 @@ TEST(ModelCheck, SaysWhichCandidatesAreNotSeparable) {
   const ModelCheck check = check_model({structure(cantilever(0), "bending_stiffness", 0.1, 4)},
                                        {0.005, {"bending_stiffness", "beam_mass", "free_length"}});
   EXPECT_THAT(testing::PrintToString(conclusions(check)),
-              HasSubstr("One and the same to these modes, which all of a group change in one proportion: "
-                        "bending stiffness, beam mass, free length."));
+              HasSubstr("Indistinguishable by these modes, within each group: bending stiffness, beam mass, "
+                        "free length."));
   for (const Explanation& pair : check.pairs) EXPECT_EQ(pair.verdict, Verdict::undetermined);
 }
 
@@ -181,7 +181,7 @@ TEST(ModelCheck, NamesTheClockAmongWhatMovesAllFrequenciesAlike) {
   for (const char* const cause :
        {"record clock +2 %", "bending stiffness +4.04 %", "beam mass -3.88 %", "free length -0.00394 m"})
     EXPECT_THAT(said[1], HasSubstr(cause));
-  EXPECT_THAT(said.back(), HasSubstr("One and the same to these modes"));
+  EXPECT_THAT(said.back(), HasSubstr("Indistinguishable by these modes"));
   EXPECT_THAT(said.back(), HasSubstr("bending stiffness, beam mass, free length"));
   EXPECT_THAT(said.back(), HasSubstr("record clock"));
 }
