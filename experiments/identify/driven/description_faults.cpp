@@ -15,6 +15,7 @@
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/model_check/candidates.hpp"
 #include "experiments/models/estimates.hpp"
+#include "experiments/record/units.hpp"
 #include "experiments/signal/spectrum.hpp"
 
 namespace beamid::experiments {
@@ -395,6 +396,46 @@ DescriptionTests description_tests(const Experiment& experiment, const Record& r
     fault.gain = 0.5 * static_cast<double>(stride) * fault.score * fault.score;
   std::ranges::stable_sort(faults, std::greater<>(), &DescriptionFault::explained);
   return tests;
+}
+
+std::string wrong_reading(const JointModel& model, const Record& record, const filters::Gaussian& known) {
+  constexpr double poor = 0.5, good = 0.3;  // of the lines' size, what the best fit leaves
+  constexpr Index most_numbers = 2000;
+  auto problem = driven_problem(model, measurements(record), known);
+  if (!problem) return {};
+  RecordLines& lines = problem->parts.front();
+  lines = thinned(lines, lines.outputs.size() / most_numbers + 1);
+  const auto left_with = [&](const std::function<void(RecordLines&)>& change) {
+    DrivenProblem other = *problem;
+    change(other.parts.front());
+    const auto fit = fit_driven(other);
+    return fit ? fit->left_share : 1.0;
+  };
+  const double described = left_with([](RecordLines&) {});
+  if (!(described > poor)) return {};
+  const std::vector<Index> outputs = output_channels(record), inputs = input_channels(record);
+  const auto name = [&](Index channel) { return record.channels[static_cast<std::size_t>(channel)].name; };
+  struct Reading {
+    double factor;
+    const char* text;
+  };
+  for (const auto& [factor, text] :
+       {Reading{-1.0, "has the other sign"},
+        Reading{1.0 / standard_gravity, "is 9.80665 times too large, as g read as m/s2"},
+        Reading{standard_gravity, "is 9.80665 times too small, as m/s2 read as g"}}) {
+    const auto sentence = [&](const std::string& who, double left) {
+      return fmt::format("{} {}: otherwise the model explains {:.0f} % of the motion, as described {:.0f} %",
+                         who, text, 100.0 * (1.0 - left), 100.0 * std::max(0.0, 1.0 - described));
+    };
+    if (const double left = left_with([&](RecordLines& other) { other.inputs *= factor; }); left < good)
+      return sentence(inputs.size() == 1 ? name(inputs[0]) : "the input", left);
+    for (std::size_t i = 0; i < outputs.size() && outputs.size() > 1; ++i)
+      if (const double left =
+              left_with([&](RecordLines& other) { other.outputs.row(static_cast<Index>(i)) *= factor; });
+          left < good)
+        return sentence(name(outputs[i]), left);
+  }
+  return {};
 }
 
 }  // namespace beamid::experiments

@@ -52,4 +52,11 @@ DescriptionTests description_tests(const Experiment& experiment, const Record& r
                                    const JointModel& model, const filters::Gaussian& prior,
                                    const Eigen::VectorXd& theta, const Eigen::VectorXd& input_noise);
 
+/// Of a driven record that the best of all starts does not make: the channel whose reading, with the other
+/// sign or in g where it is taken for m/s2 or the other way, lets the model make it. No search from what is
+/// read wrongly comes to an end.
+/// @param known beforehand of the unknowns, in the model's coordinates (q)
+/// @returns a sentence; empty: there is none
+std::string wrong_reading(const JointModel& model, const Record& record, const filters::Gaussian& known);
+
 }  // namespace beamid::experiments

@@ -152,10 +152,33 @@ ComparedRun run_from_best_start(const RunContext& context, ReducedBeam& made, co
   return run;
 }
 
+/// A driven record that the first guess does not make, where a channel is read wrongly: an end before passes
+/// that come to none.
+std::optional<ComparedRun> read_wrongly(const RunContext& context, ReducedBeam& made) {
+  if (!context.analysis.forced() || context.compared.has_open_clocks() || made.model->motion_size() < 2 ||
+      start_from_record(context, made).guess.by_lines)
+    return {};
+  context.progress("what may be read wrongly");
+  filters::Gaussian known =
+      known_about_start(*made.started, *made.setting, measurements(context.analysis.record).outputs);
+  for (std::size_t j = 0; j < made.started->model.unknowns.size(); ++j)
+    known.mean[static_cast<Index>(j)] =
+        made.started->model.unknowns[j].to_state(made.started->model.unknowns[j].guess);
+  const std::string text = wrong_reading(made.started->model, context.analysis.record, known);
+  if (text.empty()) return {};
+  ComparedRun run;
+  run.status = ComparedRun::Status::diverged;
+  run.reason = text;
+  run.object({"description", "CONTRADICTED: " + text + ". There is no estimate."});
+  return run;
+}
+
 ComparedRun identified_or_refused(const RunContext& context, ReducedBeam& made, const RunSettings& settings) {
   const Place& place = context.experiment.model.place;
   if (!made.refusal.empty()) return refused(made.refusal, place);
   try {
+    if (settings.keep == filters::Keep::all_estimates)
+      if (auto run = read_wrongly(context, made)) return *std::move(run);
     return run_from_best_start(context, made, settings);
   } catch (const std::invalid_argument& error) {  // no start can be had of the record
     return refused(error.what(), place);

@@ -6,10 +6,12 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/engine/comparison.hpp"
+#include "experiments/record/units.hpp"
 #include "tests/experiments/shaken_building.hpp"
 
 namespace beamid::experiments::description_faults_test {
@@ -102,6 +104,19 @@ TEST(DescriptionFaults, TwoExchangedSensorsAreNamed) {
   expect_named(identified(record, 1.0, 1.0),
                "floor_1 and floor_2 are exchanged: by the record the first sits at 3 m, the second at 6 m",
                0.9);
+}
+
+// Before, no search from them came to an end: a sign was "DIVERGED: it moves at ...".
+TEST(DescriptionFaults, AReversedSignAndAUnitAreNamed) {
+  for (const auto& [row, factor, sentence] :
+       {std::tuple{1, -1.0, "floor_1 has the other sign"}, std::tuple{3, -1.0, "floor_3 has the other sign"},
+        std::tuple{0, standard_gravity, "is 9.80665 times too large, as g read as m/s2"}}) {
+    Record record = shaken(1);
+    record.samples.row(row) *= factor;
+    const ComparedRun run = identified(record, 1.0, 1.0);
+    EXPECT_EQ(run.status, ComparedRun::Status::diverged) << sentence;
+    EXPECT_THAT(texts(run.objections), testing::Contains(HasSubstr(sentence)));
+  }
 }
 
 // Without noise the interpolation of the input makes all of the residual, a millionth of the motion.
