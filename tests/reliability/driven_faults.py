@@ -139,16 +139,16 @@ def judged(beamid, fault, truth, file):
     found = json.loads(run.stdout)
     sentences = [one["sentence"] for one in found["verdict"]["objections"]] or [""]
     parameters = list(found["runs"][0]["parameters"].values())
+    causes = [one["sentence"] for one in found["verdict"]["objections"] if one["name"] in NAMES_A_CAUSE]
+    named = FAULTS[fault] and any(re.search(FAULTS[fault], one) for one in causes[:2])
     if len(parameters) != len(truth):
-        return "no estimate", np.nan, [], sentences[0]
+        return "named" if named else "no estimate", np.nan, [], sentences[0]
     if fault == "damping per mode":  # a single ratio has no true value
         parameters, truth = parameters[:-1], truth[:-1]
     far = max(abs(p["estimate"] - x) / ((p["upper_95"] - p["lower_95"]) / 3.92) for p, x in zip(parameters, truth))
     inside = [p["lower_95"] <= x <= p["upper_95"] for p, x in zip(parameters, truth)]
     if run.returncode == 0:
         return "WRONG AND SURE" if far > 4 else "answered", far, inside, sentences[0]
-    causes = [one["sentence"] for one in found["verdict"]["objections"] if one["name"] in NAMES_A_CAUSE]
-    named = FAULTS[fault] and any(re.search(FAULTS[fault], one) for one in causes[:2])
     return "named" if named else "contradicted", far, inside, sentences[0]
 
 
