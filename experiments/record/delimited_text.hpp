@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,9 @@ bool holds_reading(const std::vector<std::string_view>& fields);
 
 /// The first line that is not blank behind a place of the text, 0 to 1: where its rows are.
 std::string_view line_near(std::string_view text, double place);
+
+/// Whether every one of several lines across the text fulfils it: what holds for its rows, whatever is above.
+bool holds_across(std::string_view text, const std::function<bool(std::string_view)>& fulfilled);
 
 /// The lines of a text, ended by LF or CRLF, without their ends.
 inline std::vector<std::string_view> lines_of(std::string_view text) {

@@ -25,6 +25,7 @@ namespace {
 // One record from several files, a sensor or more each.
 
 using Eigen::Index, Eigen::VectorXd;
+
 struct RecordPart {
   std::string file, stem;
   Record record;

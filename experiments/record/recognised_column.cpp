@@ -144,6 +144,14 @@ std::optional<StatedUnit> unit_of(const std::string& unit) {
   return stated_unit(unit);
 }
 
+// Units written as words, as oscilloscopes do.
+bool is_seconds(std::string_view unit) {
+  return folded(unit) == "second" || folded(unit) == "seconds";
+}
+bool is_volts(std::string_view unit) {
+  return folded(unit) == "volt" || folded(unit) == "volts";
+}
+
 // Of a word, folded [s].
 std::optional<double> unit_of_time(const std::string& word) {
   static const std::vector<std::pair<std::string_view, double>> units{
@@ -221,7 +229,7 @@ std::optional<double> seconds_per_unit(std::string_view unit) {
       {"ns", 1e-9}, {"min", 60.0}, {"h", 3600.0}, {"µs", 1e-6}, {"μs", 1e-6}};
   for (const auto& [symbol, seconds] : more)
     if (unit == symbol) return seconds;
-  if (folded(unit) == "second" || folded(unit) == "seconds") return 1.0;
+  if (is_seconds(unit)) return 1.0;
   if (unit == "mS" || unit == "MS") return 1e-3;
   if (unit == "uS" || unit == "US") return 1e-6;
   const auto stated = stated_unit(unit);
@@ -282,7 +290,7 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
     found.states_unit = seconds.has_value();
     return found;
   };
-  if (folded(unit) == "second" || folded(unit) == "seconds") return is_time(1.0);  // "Source" above "Second"
+  if (is_seconds(unit)) return is_time(1.0);  // "Source" above "Second"
   for (const auto& [word, seconds] : clocks)
     if (any_word(words, {std::string(word)})) return is_time(seconds);
   if (const auto seconds = seconds_per_unit(stated);
@@ -329,7 +337,7 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
   if (!named && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts) &&
       (words.size() == 1 || words.front().size() > 1))
     return RecognisedColumn{Kind::count};
-  if (folded(stated) == "volt" || folded(stated) == "volts") stated = "V";
+  if (is_volts(stated)) stated = "V";
   static const std::regex range_of_sensor("[0-9]+ ?g");  // "X (100g)"
   if (std::regex_match(stated, range_of_sensor)) stated = "g";
   const auto known = unit_of(stated);
@@ -366,8 +374,8 @@ bool are_units(const std::vector<std::string_view>& fields) {
   for (const std::string_view field : fields) {
     const std::string text = without_brackets(unquoted(field));
     if (text.empty() || text == "-") continue;
-    const bool is_volt = folded(text) == "volt" || folded(text) == "volts";
-    if (!unit_of(text) && !seconds_per_unit(text) && !other_units.contains(text) && !is_volt) return false;
+    if (!unit_of(text) && !seconds_per_unit(text) && !other_units.contains(text) && !is_volts(text))
+      return false;
     any = true;
   }
   return any;

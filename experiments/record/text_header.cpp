@@ -54,16 +54,14 @@ bool counts_columns(const std::vector<std::string_view>& fields) {
 
 /// Columns of the rows, where all across a text have as many; 0: they do not.
 std::size_t width_across(std::string_view text, char separator) {
-  constexpr double places[] = {0.3, 0.45, 0.6, 0.75, 0.9};
   std::size_t width = 0;
-  for (const double place : places) {
-    const std::string_view line = line_near(text, place);
+  const bool one = holds_across(text, [&](std::string_view line) {
     std::vector<std::string_view> cells;
     split_fields(line, separator == '\0' ? separator_of(line) : separator, cells, true);
-    if (line.empty() || (width != 0 && cells.size() != width)) return 0;
-    width = cells.size();
-  }
-  return width;
+    const std::size_t before = std::exchange(width, cells.size());
+    return before == 0 || before == width;
+  });
+  return one ? width : 0;
 }
 
 /// Below a line with names of times or counts, one that repeats some of it and states two or more units, of a
@@ -224,8 +222,8 @@ bool DelimitedText::find_body() {
       if (lines[first - 1].width == width || (names_width(k) && names(k))) return false;
   if (!header && nearest && *nearest > 0 && first - *nearest == 1 && names_width(*nearest - 1)) --*nearest;
   if (!header) header = nearest;
-  std::optional<std::size_t>
-      keyed_units;  // "TraceName","CH1"; "VUnit","V"; then rows that begin with a blank
+  // "TraceName","CH1"; "VUnit","V"; then rows that begin with a blank.
+  std::optional<std::size_t> keyed_units;
   for (std::size_t k = 0; k < first && fields[first][0].empty(); ++k) {
     const std::string key = folded(unquoted(fields[k][0]));
     if (fields[k].size() == width && key == "tracename") header = k;

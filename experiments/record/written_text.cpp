@@ -13,11 +13,6 @@
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
-namespace {
-
-using Fields = std::vector<std::string_view>;
-
-/// Whether every one of several lines across the text fulfils it: what holds for its rows, whatever is above.
 bool holds_across(std::string_view text, const std::function<bool(std::string_view)>& fulfilled) {
   constexpr double places[] = {0.3, 0.45, 0.6, 0.75, 0.9};
   return std::ranges::all_of(places, [&](double place) {
@@ -25,6 +20,10 @@ bool holds_across(std::string_view text, const std::function<bool(std::string_vi
     return !line.empty() && fulfilled(line);
   });
 }
+
+namespace {
+
+using Fields = std::vector<std::string_view>;
 
 /// A number, a stamp, or "x: 0.25".
 bool is_value(std::string_view field) {

@@ -26,6 +26,15 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr double worth_following = 0.1, mostly = 0.5, sure_score = 5.0;  // of what is left; deviations
 constexpr double hopeless = 2.5;  // times what is left, after a few steps
 
+/// Of a long record every so many lines: each costs all trials alike. @returns one of how many
+Index keep_few_lines(DrivenProblem& problem) {
+  constexpr Index most_numbers = 2000;
+  RecordLines& lines = problem.parts.front();
+  const Index stride = lines.outputs.size() / most_numbers + 1;
+  lines = thinned(lines, stride);
+  return stride;
+}
+
 /// The model of another description.
 class OtherModels {
  public:
@@ -368,10 +377,7 @@ DescriptionTests description_tests(const Experiment& experiment, const Record& r
   std::vector<DescriptionFault>& faults = tests.faults;
   auto problem = driven_problem(model, measurements(record), prior);
   if (!problem) return tests;
-  constexpr Index most_numbers = 2000;  // of a long record every so many lines: each costs all trials alike
-  RecordLines& lines = problem->parts.front();
-  const Index stride = lines.outputs.size() / most_numbers + 1;
-  lines = thinned(lines, stride);
+  const Index stride = keep_few_lines(*problem);
   try {
     if (has_noise(input_noise)) problem->input_noise = input_noise;
     const DrivenFit fit = weigh_by_residual(*problem, theta);
@@ -400,11 +406,9 @@ DescriptionTests description_tests(const Experiment& experiment, const Record& r
 
 std::string wrong_reading(const JointModel& model, const Record& record, const filters::Gaussian& known) {
   constexpr double poor = 0.5, good = 0.3;  // of the lines' size, what the best fit leaves
-  constexpr Index most_numbers = 2000;
   auto problem = driven_problem(model, measurements(record), known);
   if (!problem) return {};
-  RecordLines& lines = problem->parts.front();
-  lines = thinned(lines, lines.outputs.size() / most_numbers + 1);
+  keep_few_lines(*problem);
   const auto left_with = [&](const std::function<void(RecordLines&)>& change) {
     DrivenProblem other = *problem;
     change(other.parts.front());

@@ -275,7 +275,7 @@ bool judge_faults(ComparedRun& run) {
                                     ". Allowed for, it moves no estimate out of its interval.",
                                 explained, mostly);
   };
-  if (count > 0 && (moves ? !is_material && leaves_next_to_nothing(run) : run.misfit_percent < slight)) {
+  if (count > 0 && (moves ? !is_material && has_small_residual(run) : run.misfit_percent < slight)) {
     if (moves) hold_moved(run, moved_by(run.description.faults.front()));
     mention(named, run.description.faults.front().explained);
     return true;
@@ -286,7 +286,7 @@ bool judge_faults(ComparedRun& run) {
     for (const DescriptionFault& fault : run.description.faults) {
       const Move move = farthest_move(run, moved_by(fault));
       if (!(fault.score > surely) || !(move.deviations > quantile_95)) continue;
-      if (!(fault.explained > least) || (!move.is_material && leaves_next_to_nothing(run))) {
+      if (!(fault.explained > least) || (!move.is_material && has_small_residual(run))) {
         hold_moved(run, moved_by(fault));
         if (held.empty()) held = share(fault), held_share = fault.explained;
         continue;

@@ -177,7 +177,7 @@ ComparedRun identified_or_refused(const RunContext& context, ReducedBeam& made, 
   const Place& place = context.experiment.model.place;
   if (!made.refusal.empty()) return refused(made.refusal, place);
   try {
-    if (settings.keep == filters::Keep::all_estimates)
+    if (settings.keep == filters::Keep::all_estimates && !settings.input_noise)
       if (auto run = read_wrongly(context, made)) return *std::move(run);
     return run_from_best_start(context, made, settings);
   } catch (const std::invalid_argument& error) {  // no start can be had of the record

@@ -208,8 +208,8 @@ void judge_inputs(const RunContext& context, ComparedRun& run) {
   constexpr double highly_significant = 10.0, material_move = 1.0;  // deviations
   const bool moves =
       fault->moved > quantile_95 || (fault->moved > material_move && fault->surely > highly_significant);
-  const bool is_immaterial = leaves_next_to_nothing(run) &&
-                             (fault->moves.size() == 0 || !farthest_move(run, fault->moves).is_material);
+  const bool is_immaterial =
+      has_small_residual(run) && (fault->moves.size() == 0 || !farthest_move(run, fault->moves).is_material);
   const bool excluded =
       !is_immaterial && ((moves && fault->is_sure && !approximate) || fault->explained > mostly);
   // Noise of an input is named where the intervals hold it, too: stated, it makes them narrower. So is a

@@ -307,7 +307,7 @@ void hold_moved(ComparedRun& run, const VectorXd& moved) {
   }
 }
 
-bool leaves_next_to_nothing(const ComparedRun& run) {
+bool has_small_residual(const ComparedRun& run) {
   constexpr double next_to_nothing = 0.1;  // %
   return run.misfit_percent < next_to_nothing;
 }

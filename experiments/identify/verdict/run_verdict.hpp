@@ -47,8 +47,9 @@ Move farthest_move(const ComparedRun& run, const Eigen::VectorXd& moved);
 void hold_moved(ComparedRun& run, const Eigen::VectorXd& moved);
 
 /// Whether what is left is too little to speak against a description, where no move is material: less than a
-/// thousandth of the motion. A record that is simulated without noise leaves the interpolation of its input.
-bool leaves_next_to_nothing(const ComparedRun& run);
+/// thousandth of the motion. Of a record that is simulated without noise the interpolation of its input is
+/// such.
+bool has_small_residual(const ComparedRun& run);
 
 // What a reduction does by itself to what is identified with it (reduction_bias.cpp).
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -257,15 +258,16 @@ void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found
       "Standard deviations are too small. For random vibration take --method ssi_cov or bayoma and a record "
       "of many "
       "decay times; for a decay, a --window of it alone.";
-  constexpr double reproduced = 0.5;  // of the motion's size
+  constexpr double reproduced = 0.5, mostly = 0.3;  // of the motion's size, the residual
   const MatrixXd motion = samples.colwise() - samples.rowwise().mean();
   const Index half = motion.cols() / 2;
   const double early = motion.leftCols(half).squaredNorm(), late = motion.rightCols(half).squaredNorm();
-  const bool decays =
-      (found.polished && !found.modes.empty()) ||
-      (found.reproduced.size() > 0 && (found.target - found.reproduced).norm() < reproduced * motion.norm());
+  const double residual = found.reproduced.size() > 0 ? (found.target - found.reproduced).norm()
+                                                      : std::numeric_limits<double>::infinity();
+  const bool decays = (found.polished && !found.modes.empty()) ||
+                      residual<reproduced * motion.norm(), is_as_strong_late = late> 0.7 * early;
   const std::size_t before = found.objections.size();
-  if (found.free_decay && !decays && late > 0.7 * early)
+  if (found.free_decay && !decays && is_as_strong_late)
     found.objections.emplace_back(
         "no_decay",
         "The record does not decay: its second half is nearly as strong as its first, and no decaying modes "
@@ -276,7 +278,7 @@ void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found
         "no_decay",
         fmt::format("The motion goes on: the modes do not explain {:.2g} % of it, at their own frequencies "
                     "and to the end, which no decay does. {}",
-                    100.0 * (found.target - found.reproduced).norm() / motion.norm(), no_decay));
+                    100.0 * residual / motion.norm(), no_decay));
   else if (found.free_decay && moved_before(whole, found))
     found.objections.emplace_back(
         "no_decay",
@@ -284,11 +286,8 @@ void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found
                     "as after. {}",
                     found.record.time[0], no_decay));
   // What decaying modes reproduce for the most part is a decay, whatever goes on beside it.
-  constexpr double mostly = 0.3;
-  const bool is_mostly_decay = found.reproduced.size() > 0 &&
-                               (found.target - found.reproduced).norm() < mostly * motion.norm() &&
-                               late < 0.7 * early;
-  found.decays = found.objections.size() == before || is_mostly_decay;
+  found.decays =
+      found.objections.size() == before || (residual < mostly * motion.norm() && !is_as_strong_late);
   found.steady = found.free_decay || std::max(early, late) <= 10 * std::min(early, late);
   if (!found.steady)
     found.objections.emplace_back(

@@ -14,6 +14,14 @@
 namespace beamid::experiments {
 namespace {
 
+std::unique_ptr<mat_t, MatioDeleter> opened(const std::string& name) {
+  Mat_LogInitFunc("beamid", [](int, auto*) {});
+  std::unique_ptr<mat_t, MatioDeleter> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
+  if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
+  if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);
+  return file;
+}
+
 bool is_numeric(const matvar_t& variable) {
   switch (variable.class_type) {
     case MAT_C_DOUBLE:
@@ -82,11 +90,7 @@ class MatReader final : public RecordReader {
 
  private:
   static void collect(CollectedSignals& signals) {
-    const std::string& name = signals.file();
-    Mat_LogInitFunc("beamid", [](int, auto*) {});
-    const std::unique_ptr<mat_t, MatioDeleter> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
-    if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
-    if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);
+    const auto file = opened(signals.file());
     while (const std::unique_ptr<matvar_t, MatioDeleter> found{Mat_VarReadNextInfo(file.get())}) {
       const bool holds_others = found->class_type == MAT_C_STRUCT || found->class_type == MAT_C_CELL;
       if (found->name == nullptr || (!is_numeric(*found) && !holds_others)) continue;
@@ -217,11 +221,7 @@ void add_sparse(const matvar_t& variable, std::vector<double>& rows, std::vector
 }
 
 void collect_matrices(CollectedSignals& signals, const std::string& wanted) {
-  const std::string& name = signals.file();
-  Mat_LogInitFunc("beamid", [](int, auto*) {});
-  const std::unique_ptr<mat_t, MatioDeleter> file(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
-  if (!file) throw InputError({name}, "no MATLAB file; expected one of level 5 or 7.3");
-  if (Mat_GetVersion(file.get()) == MAT_FT_MAT73) require_own_storage(name);
+  const auto file = opened(signals.file());
   while (const std::unique_ptr<matvar_t, MatioDeleter> found{Mat_VarReadNextInfo(file.get())}) {
     if (!is_matrix(*found) || (!wanted.empty() && wanted != found->name)) continue;
     const std::string own = found->name;

@@ -175,14 +175,22 @@ std::string variation_text(const AmplitudeSections& by) {
 }
 
 // What the motion is that the model does not have, as far as a test tells.
+bool has_second_mode(const RecordIdentification& found) {
+  return !found.modal.companions.empty() && found.modal_failure.empty();
+}
+
+bool varies_with_amplitude(const RecordIdentification& found) {
+  return found.sections.damping.varies() || found.sections.frequency.varies();
+}
+
 std::string unmodelled_text(const RecordIdentification& found) {
   const AmplitudeSections& by = found.sections;
-  if (by.damping.varies() || by.frequency.varies())
+  if (varies_with_amplitude(found))
     return fmt::format(
         ". With the amplitude {} (fits in {} sections). The intervals were widened to cover 95 % of the "
         "decay: by {:.3g} (frequency, K) and {:.3g} (damping)",
         variation_text(by), by.sections.size(), found.frequency_factor(), found.damping_factor());
-  if (!found.modal.companions.empty() && found.modal_failure.empty()) {
+  if (has_second_mode(found)) {
     const double off = std::abs(found.identification.found.damping_ratio() - found.modal.damping_ratio) /
                        (quantile_95 * found.damping_factor() * found.identification.damping_ratio_deviation);
     return fmt::format(
@@ -195,9 +203,7 @@ std::string unmodelled_text(const RecordIdentification& found) {
 
 // White innovations, with neither a second mode nor variation with the amplitude: their size is the noise's.
 bool shows_noise_alone(const RecordIdentification& found) {
-  const bool second = !found.modal.companions.empty() && found.modal_failure.empty();
-  return found.consistency->white() && !second && !found.sections.damping.varies() &&
-         !found.sections.frequency.varies();
+  return found.consistency->white() && !has_second_mode(found) && !varies_with_amplitude(found);
 }
 
 std::string verdict(const RecordIdentification& found) {
