@@ -21,6 +21,7 @@
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/record/prepare/prepared_record.hpp"
 #include "experiments/studies/identify/report.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/spelling.hpp"
 #include "filters/smoother.hpp"
 
@@ -143,10 +144,9 @@ Experiment one_mode(const fs::path& file, const Record& record, const RecordForm
   share.maxCoeff(&channel);
   const double w = 2.0 * std::numbers::pi * pole.frequency_hz();
   Experiment experiment = read_experiment(TomlTable::parse(
-      fmt::format(
-          "title = \"{}\"\n[chain]\nmasses_kg = [{:.17g}]\nstiffnesses_n_per_m = [{:.17g}]\nheights_m = "
-          "[1.0]\n[damping]\nlaw = \"modal\"\nratio = {:.17g}\n",
-          file.filename().string(), mass, mass * w * w, pole.damping_ratio()),
+      fmt::format("title = {}\n[chain]\nmasses_kg = [{:.17g}]\nstiffnesses_n_per_m = [{:.17g}]\nheights_m = "
+                  "[1.0]\n[damping]\nlaw = \"modal\"\nratio = {:.17g}\n",
+                  toml_string(file.filename().string()), mass, mass * w * w, pole.damping_ratio()),
       file.string()));
   experiment.format = format;
   experiment.is_described = false;

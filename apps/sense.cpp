@@ -11,6 +11,7 @@
 #include "experiments/models/structure_points.hpp"
 #include "experiments/studies/sensing/report.hpp"
 #include "experiments/text/choice.hpp"
+#include "experiments/text/fields.hpp"
 #include "filters/filter.hpp"
 
 namespace beamid::apps {
@@ -30,14 +31,10 @@ void add_place(const std::string& text, Experiment& experiment) {
         {"displacement_" + text, Quantity::displacement, false, {}, 0.0, text});
     return;
   }
-  double position = 0.0;
-  try {
-    std::size_t read = 0;
-    position = std::stod(text, &read);
-    if (read != text.size() || !(position >= 0.0 && position <= structure.extent())) throw std::exception();
-  } catch (const std::exception&) {
+  const ParsedNumber parsed = parse_number(text);
+  const double position = parsed.value;
+  if (!parsed.finite || !(position >= 0.0 && position <= structure.extent()))
     throw UsageError("--at " + text + ": expected a position on the structure [m]");
-  }
   const std::string place = name_of_place(position, structure.extent());
   experiment.virtual_sensors.push_back({"displacement_" + place, Quantity::displacement, false, position});
   if (!structure.is_chain())

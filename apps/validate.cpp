@@ -118,8 +118,7 @@ bool is_one_beam(const fem::Structure& structure) {
 
 std::string structure_words(const Experiment& experiment, const fem::StructuralSystem& system) {
   const fem::Structure& structure = experiment.structure;
-  const std::string first =
-      fmt::format("irst mode predicted at {:.4f} Hz", fem::modes(system, 1).frequency_hz()[0]);
+  const std::string first = fmt::format("irst mode predicted at {:.4f} Hz", fem::lowest_frequency_hz(system));
   if (!is_one_beam(structure))
     return structure_text(experiment, experiment.elements, system.size()) + " F" + first + ".";
   const fem::Beam& beam = structure.beam();

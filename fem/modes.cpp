@@ -306,4 +306,13 @@ std::vector<ModeCurve> mode_curves(const ParametricSystem& equations, const Mode
   return curves;
 }
 
+double lowest_frequency_hz(const StructuralSystem& system) {
+  constexpr Index most_rigid = 6;  // of a structure in space
+  for (Index count = 1; count <= std::min(most_rigid + 1, system.size()); ++count) {
+    const Modes lowest = modes(system, count);
+    if (lowest.rigid < count) return lowest.frequency_hz()[lowest.rigid];
+  }
+  return 0.0;
+}
+
 }  // namespace beamid::fem

@@ -42,6 +42,9 @@ struct Modes {
 /// buckling), when fewer than `count` modes have mass.
 Modes modes(const StructuralSystem& system, Eigen::Index count);
 
+/// Of the lowest mode that is no rigid-body motion [Hz]; 0 where there is none. @throws as modes()
+double lowest_frequency_hz(const StructuralSystem& system);
+
 // How natural frequencies and mode shapes move with a beam's parameters.
 
 /// One mode near p_0, to the second order in x = p - p_0:

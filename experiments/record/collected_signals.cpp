@@ -50,9 +50,14 @@ void CollectedSignals::announce(const std::string& name, const std::vector<std::
 }
 
 void CollectedSignals::add(std::string name, std::string unit, std::vector<double> values, int digits) {
+  if (values.size() > 1) add_numbers(std::move(name), std::move(unit), std::move(values), digits);
+}
+
+void CollectedSignals::add_numbers(std::string name, std::string unit, std::vector<double> values,
+                                   int digits) {
   for (double& value : values)
     if (!std::isfinite(value)) value = std::nan("");
-  if (values.size() > 1) signals_.push_back({std::move(name), std::move(unit), std::move(values), digits});
+  signals_.push_back({std::move(name), std::move(unit), std::move(values), digits});
 }
 
 void CollectedSignals::add_matrix(const std::function<std::string(std::size_t, bool)>& name_of,

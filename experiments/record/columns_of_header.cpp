@@ -39,18 +39,6 @@ std::pair<Quantity, double> certain_unit(const RecordTable& table) {
                                                    found.substr(0, found.size() - 1), in_configuration));
 }
 
-std::string unit_of_time(double factor) {
-  return factor == 1.0       ? "s"
-         : factor == 1e-3    ? "ms"
-         : factor == 1e-6    ? "us"
-         : factor == 1e-9    ? "ns"
-         : factor == 1e-7    ? "100 ns"
-         : factor == 60.0    ? "min"
-         : factor == 3600.0  ? "h"
-         : factor == 86400.0 ? "days"
-                             : fmt::format("{:g} s", factor);
-}
-
 // "column 2 is", "columns 2 to 4 are".
 std::string numbers_of(const std::vector<RecordColumn>& columns) {
   std::string list;
@@ -292,7 +280,7 @@ class Recognition {
     const std::string name = column_name_of(table, index);
     read_ += fmt::format("{}{} as time in {}", read_.empty() ? "" : ", ",
                          name.empty() ? fmt::format("column {}", index + 1) : "'" + name + "'",
-                         unit_of_time(*factor));
+                         symbol_of_time(*factor));
   }
 
   // Two columns of times, each for the channels beside it.
@@ -380,7 +368,7 @@ RecordColumns columns_without_header(RecordTable& table, bool stamped) {
   table.remarks.push_back(fmt::format(
       "No header: {}{} {}.",
       columns.time ? fmt::format("column {} is taken for time in {}, ", columns.time->index + 1,
-                                 unit_of_time(columns.time->factor))
+                                 symbol_of_time(columns.time->factor))
                    : "",
       numbers_of(columns.channels),
       table.stated_unit ? "in the unit that the lines above state"

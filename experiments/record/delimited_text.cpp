@@ -79,9 +79,7 @@ void DelimitedText::choose_separator() {
       thousands = thousands && field.size() - at == 4 && field[sign] != '0' && at > sign;
     }
     if (rest.empty()) break;
-    const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
-    line = rest.substr(0, end);
-    rest.remove_prefix(std::min(rest.size(), end + 1));
+    line = take_line(rest);
   }
   if (comma && !(thousands && whole)) decimal_ = ',';
 }
@@ -112,11 +110,14 @@ void DelimitedText::split_row() {
 
 bool DelimitedText::next_line() {
   if (rest_.empty()) return false;
-  const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-  line_ = rest_.substr(0, end);
-  rest_.remove_prefix(std::min(rest_.size(), end + (rest_.substr(end).starts_with("\r\n") ? 2 : 1)));
+  line_ = take_line(rest_);
   ++line_number_;
   return true;
+}
+
+void DelimitedText::go_back_to(const EarlyLine& line, std::string_view text) {
+  rest_ = text.substr(static_cast<std::size_t>(line.text.data() - text.data()));
+  line_ = take_line(rest_), line_number_ = line.number;
 }
 
 bool DelimitedText::next_row() {

@@ -82,6 +82,11 @@ class DelimitedText {
   /// @throws InputError when it has not width() columns, unless the walk is tolerant.
   bool next();
 
+  /// Reads on, many rows at once, up to the first that is not plain: numbers alone in all columns, parted by
+  /// nothing but the separator and blanks (plain_rows.cpp). What next() would say of these rows is added to
+  /// the table and its cells.
+  void take_plain_rows(RecordTable& table, TextCells& cells);
+
   Place place(std::size_t column) const;  ///< of a field of this row; columns count from 0
   Place row_place() const { return {file_, line_number_, 1}; }
   std::string_view line() const { return line_; }
@@ -104,6 +109,12 @@ class DelimitedText {
     std::size_t number, width;
     bool rows;  ///< numbers throughout, or, failing that, somewhere
   };
+
+  /// The plain rows of a length of the text. @returns how many
+  std::size_t take_plain_stretch(RecordTable& table, TextCells& cells, std::size_t length);
+  void go_back_to(const EarlyLine& line, std::string_view text);  ///< as the line that was read last
+
+  class Body;
 
   struct Comment {
     std::string_view text;
@@ -136,6 +147,7 @@ class DelimitedText {
   std::vector<Comment> comments_;  ///< before the first row
   bool semicolon_comments_ = false, labelled_ = false;
   bool first_row_pending_ = false;
+  std::ptrdiff_t pause_ = 0, next_pause_ = 0;  ///< rows that are read one by one before many are tried
   std::vector<std::string_view> fields_;
   std::vector<std::string> names_, units_;
 };

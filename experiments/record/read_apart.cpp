@@ -183,7 +183,8 @@ bool receive(PipeReceiver& in, const ReadingLimits& limits, CollectedSignals& si
       return false;
     signal.values.resize(size);
     if (!in.bytes(signal.values.data(), size * sizeof(double))) return false;
-    signals.add(std::move(signal.name), std::move(signal.unit), std::move(signal.values), signal.digits);
+    signals.add_numbers(std::move(signal.name), std::move(signal.unit), std::move(signal.values),
+                        signal.digits);
   }
   return true;
 }
@@ -234,8 +235,8 @@ void ask_apart(const std::string& file, const std::string& library, const Readin
   const int reason = errno;
   close(ends[1]);
   // Whoever waits for a disk or for others on the machine takes no processor time.
-  PipeReceiver in(ends[0], SteadyClock::now() +
-                               std::chrono::milliseconds(std::llround(1e3 * (60 + 10 * limits.seconds))));
+  const double patience = 60.0 + 10.0 * limits.seconds;  // [s]
+  PipeReceiver in(ends[0], SteadyClock::now() + std::chrono::milliseconds(std::llround(1e3 * patience)));
   if (child < 0)
     throw std::runtime_error("no process that reads '" + file + "' can be started: " + std::strerror(reason));
 
@@ -251,7 +252,7 @@ void ask_apart(const std::string& file, const std::string& library, const Readin
   const bool ended_by_limit = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
   if (in.late() || ended_by_limit)
     throw InputError({file}, fmt::format("{} has not come to an end with it in {:.0f} s; {}", library,
-                                         std::ceil(limits.seconds), expected));
+                                         in.late() ? patience : std::ceil(limits.seconds), expected));
   if (!whole)
     throw InputError(
         {file},

@@ -34,7 +34,10 @@ class CollectedSignals {
   /// is above what the file may hold.
   void announce(const std::string& name, const std::vector<std::size_t>& extent);
 
-  /// @param digits significant ones: 7 in single precision, 15 in double.
+  /// Numbers of any count. @param digits significant ones: 7 in single precision, 15 in double.
+  void add_numbers(std::string name, std::string unit, std::vector<double> values, int digits);
+
+  /// A signal, of two samples at least; others are no use.
   void add(std::string name, std::string unit, std::vector<double> values, int digits);
 
   /// A matrix (rows x columns, stored column by column): a signal for each column, or for each row where

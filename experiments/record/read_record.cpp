@@ -197,15 +197,15 @@ void refuse_bursts(const Stamps& stamps) {
   constexpr std::size_t fewest = 10, most_samples = 64;
   constexpr double pause = 2.5, much = 0.5;  // of the usual step, of the time
   const std::vector<double>& times = stamps.values();
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
-  const double usual = median(steps), longest = pause * usual;
+  const std::size_t steps = times.size() - 1;
+  if (const auto [shortest, longest] = range_of_steps(times); longest <= pause * shortest) return;
+  const double usual = usual_step(times);
   std::size_t pauses = 0;
   double passed = 0.0;
-  for (const double step : steps)
-    if (step > longest) ++pauses, passed += step;
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (const double step = times[k] - times[k - 1]; step > pause * usual) ++pauses, passed += step;
   const double length = times.back() - times.front();
-  if (pauses < fewest || steps.size() > most_samples * pauses || passed < much * length) return;
+  if (pauses < fewest || steps > most_samples * pauses || passed < much * length) return;
   throw InputError(
       stamps.table->place(0, stamps.column->index),
       fmt::format(
@@ -214,7 +214,7 @@ void refuse_bursts(const Stamps& stamps) {
           "the sampling rate: --rate HZ (the mean is about {:.3g}), or record.sampling_rate_hz in the "
           "configuration",
           pauses + 1, (times.size() + pauses / 2) / (pauses + 1), usual * stamps.factor(),
-          static_cast<double>(steps.size()) / (length * stamps.factor())));
+          static_cast<double>(steps) / (length * stamps.factor())));
 }
 
 /// Whether stamps that come in bursts, or late, run at the stated rate: the line through all of them does, to
@@ -364,7 +364,7 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
         used, [&](const Used& one) { return std::isfinite(table.columns[one.index][rows - 1]); });
     if ((says_missing(cell) && !empty) || cell.find_first_of("0123456789") != cell.npos) break;
     kept[--rows] = false;
-    lines.push_back(rows < table.lines.size() ? table.lines[rows] : rows + 1);
+    lines.push_back(table.line_of(rows));
   }
   for (std::size_t row = 0; row < rows; ++row)
     for (const auto& [column, factor] : used) {
@@ -372,7 +372,7 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
       if (malformed == MalformedRows::as_missing && column != time && is_missing(table, row, column))
         continue;
       if (malformed != MalformedRows::skip) throw table.fault(row, column);
-      if (kept[row]) lines.push_back(row < table.lines.size() ? table.lines[row] : row + 1);
+      if (kept[row]) lines.push_back(table.line_of(row));
       kept[row] = false;
     }
   std::sort(lines.begin(), lines.end());
@@ -408,19 +408,19 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   Record record;
   const Stamps stamps{&table, columns.time, &format};
   record.time = instants(stamps, table.remarks);
+  if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
+  table.cell = nullptr;  // of a long record, the text takes the most memory
   record.samples.resize(static_cast<Eigen::Index>(columns.channels.size()),
                         static_cast<Eigen::Index>(table.rows()));
   for (std::size_t channel = 0; channel < columns.channels.size(); ++channel) {
     const RecordColumn& column = columns.channels[channel];
     const std::vector<double>& values = table.columns[column.index];
-    for (std::size_t row = 0; row < values.size(); ++row)
-      record.samples(static_cast<Eigen::Index>(channel), static_cast<Eigen::Index>(row)) =
-          values[row] * column.factor;
+    record.samples.row(static_cast<Eigen::Index>(channel)) =
+        Eigen::Map<const Eigen::RowVectorXd>(values.data(), record.samples.cols()) * column.factor;
     record.channels.push_back(column.channel);
   }
   record.input_path = format.input;
   record.own_clock = format.own_clock;
-  if (columns.time && !format.sampling_rate) record.time_resolution = resolution(stamps, record);
   record.remarks = table.remarks;
   for (const std::string& text : table.warnings) record.objections.emplace_back("file", text);
   std::vector<std::string> names;

@@ -184,7 +184,9 @@ std::optional<double> unit_among(const std::vector<std::string>& words) {
 }
 
 std::string without_brackets(std::string text) {
-  if (text.size() > 2 && (text.front() == '[' || text.front() == '(')) text = text.substr(1, text.size() - 2);
+  const bool both =
+      (text.starts_with('[') && text.ends_with(']')) || (text.starts_with('(') && text.ends_with(')'));
+  if (text.size() > 2 && both) text = text.substr(1, text.size() - 2);
   return text;
 }
 

@@ -173,6 +173,17 @@ std::filesystem::path places_file(const std::filesystem::path& record) {
   return file.replace_extension(".toml");
 }
 
+namespace {
+
+/// To the SI unit of a quantity; 1 where none of its units is written so.
+double factor_of(const std::optional<std::string>& symbol, Quantity quantity) {
+  for (const Unit& unit : units(quantity))
+    if (symbol == unit.symbol) return unit.factor;
+  return 1.0;
+}
+
+}  // namespace
+
 void take_places(const std::filesystem::path& file, const std::vector<std::string>& columns, Record& record) {
   const std::filesystem::path beside = places_file(file);
   std::error_code ignored;
@@ -185,11 +196,16 @@ void take_places(const std::filesystem::path& file, const std::vector<std::strin
     const auto* const name = value ? std::get_if<std::string>(&*value) : nullptr;
     for (std::size_t i = 0; name && i < record.channels.size(); ++i) {
       Channel& channel = record.channels[i];
-      if (columns[i] != *name || channel.position) continue;
-      channel.position = one.find_number("position_m", Sign::not_negative);
-      channel.place = one.find_text("at").value_or("");
-      channel.distance = one.find_number("distance_m").value_or(channel.distance);
-      channel.noise = one.find_number("noise").value_or(channel.noise);
+      if (columns[i] != *name) continue;
+      if (!channel.position && channel.place.empty()) {
+        channel.position = one.find_number("position_m", Sign::not_negative);
+        channel.place = one.find_text("at").value_or("");
+      }
+      if (channel.distance == Channel{}.distance)
+        channel.distance = one.find_number("distance_m").value_or(channel.distance);
+      if (!(channel.noise > 0.0))
+        if (const auto noise = one.find_number("noise", Sign::not_negative))
+          channel.noise = *noise * factor_of(one.find_text("unit"), channel.quantity);
     }
   }
   if (record.input_path) return;
@@ -203,17 +219,18 @@ std::string places_text(const Record& record, const std::string& file_name) {
   std::string text =
       "# What the header of the record does not state: where its channels were measured. Commands that read "
       "the\n"
-      "# record read this file with it; it may also stand in an experiment file.\n\n[record]\nfile = \"" +
-      file_name + "\"\n";
+      "# record read this file with it; it may also stand in an experiment file.\n\n[record]\nfile = " +
+      toml_string(file_name) + "\n";
   if (record.input_path)
     text += fmt::format("input = \"{}\"\n", path_names[static_cast<int>(*record.input_path)]);
   const std::vector<std::string> columns = column_names(record);
   for (std::size_t i = 0; i < record.channels.size(); ++i) {
     const Channel& channel = record.channels[i];
-    text += fmt::format("\n[[record.channels]]\ncolumn = \"{}\"\nquantity = \"{}\"\nunit = \"{}\"\n",
-                        columns[i + 1], to_string(channel.quantity), units(channel.quantity).front().symbol);
+    text += fmt::format("\n[[record.channels]]\ncolumn = {}\nquantity = \"{}\"\nunit = \"{}\"\n",
+                        toml_string(columns[i + 1]), to_string(channel.quantity),
+                        units(channel.quantity).front().symbol);
     if (channel.position) text += fmt::format("position_m = {}\n", *channel.position);
-    if (!channel.place.empty()) text += fmt::format("at = \"{}\"\n", channel.place);
+    if (!channel.place.empty()) text += fmt::format("at = {}\n", toml_string(channel.place));
     if (channel.noise > 0.0) text += fmt::format("noise = {}\n", channel.noise);
     if (channel.quantity == Quantity::strain) text += fmt::format("distance_m = {}\n", channel.distance);
   }

@@ -173,7 +173,7 @@ void leave_out_repeated(RecordTable& table, const RecordColumns& columns) {
              return table.columns[one.index][row] == table.columns[one.index][row - 1];
            });
     kept[row] = false;
-    lines.push_back(row < table.lines.size() ? table.lines[row] : row + 1);
+    lines.push_back(table.line_of(row));
   }
   if (lines.empty() || static_cast<double>(lines.size()) > few * static_cast<double>(table.rows())) return;
   if (!same) {  // stamps of several samples, or printed more coarsely than samples follow each other

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/signal/toolbox.hpp"
+#include "experiments/record/stamps.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -29,7 +29,7 @@ void PrintedPrecision::add(std::string_view token) {
   for (std::size_t i = 0; i < token.size(); ++i) {
     if (token[i] == '.') {
       point = true;
-    } else if (token[i] == 'e' || token[i] == 'E') {
+    } else if (std::string_view("eEdD").find(token[i]) != std::string_view::npos) {
       const std::size_t start = i + (token.substr(i + 1).starts_with('+') ? 2 : 1);
       std::from_chars(token.data() + start, token.data() + token.size(), exponent);
       break;
@@ -40,6 +40,11 @@ void PrintedPrecision::add(std::string_view token) {
   }
   decimals_ = std::max(decimals_, decimals - exponent);
   digits_ = std::max(digits_, digits);
+}
+
+void PrintedPrecision::add(const PrintedPrecision& other) {
+  decimals_ = std::max(decimals_, other.decimals_);
+  digits_ = std::max(digits_, other.digits_);
 }
 
 PrintedPrecision PrintedPrecision::of_digits(int digits) {
@@ -73,13 +78,13 @@ std::optional<SamplingFault> find_order_fault(const std::vector<double>& times) 
 std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,
                                                  const PrintedPrecision& precision) {
   if (auto fault = find_order_fault(times)) return fault;
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
-  if (intervals.empty()) return std::nullopt;
-  const double usual = median(intervals);
   constexpr double tolerated = 0.05, slack = 1 + 1e-6;
+  if (times.size() < 2) return std::nullopt;
+  const auto [shortest, longest] = range_of_steps(times);
+  if (longest - shortest <= tolerated * shortest) return std::nullopt;
+  const double usual = usual_step(times);
   for (std::size_t i = 1; i < times.size(); ++i) {
-    const double deviation = std::abs(intervals[i - 1] - usual);
+    const double interval = times[i] - times[i - 1], deviation = std::abs(interval - usual);
     if (deviation <= tolerated * usual) continue;
     const double rounding = std::max(precision.resolution(times[i]), precision.resolution(times[i - 1]));
     const bool coarse = rounding > 0.5 * usual * slack;  // a missing sample would look the same
@@ -87,7 +92,7 @@ std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& time
       return SamplingFault{
           i, fmt::format(
                  "time {} after {}, an interval of {:.6g}; expected the median interval {:.6g} within 5 %{}",
-                 times[i], times[i - 1], intervals[i - 1], usual, coarse ? too_coarse : "")};
+                 times[i], times[i - 1], interval, usual, coarse ? too_coarse : "")};
   }
   return std::nullopt;
 }
@@ -107,6 +112,28 @@ InputError number_fault(const TextField& found, std::size_t column) {
                          : found.text.find(',') != std::string::npos ? "a number with a decimal point"
                                                                      : "a number";
   return {found.place, fmt::format("column {} holds {}; expected {}", column + 1, shown, expected)};
+}
+
+std::size_t RowLines::operator[](std::size_t row) const {
+  const auto after = std::ranges::upper_bound(runs_, row, {}, &Run::row);
+  return std::prev(after)->line + (row - std::prev(after)->row);
+}
+
+bool RowLines::add(std::size_t line, std::size_t count) {
+  const bool begins = runs_.empty() || line != runs_.back().line + (size_ - runs_.back().row);
+  if (begins) runs_.push_back({size_, line});
+  size_ += count;
+  return begins;
+}
+
+void RowLines::keep(const std::vector<bool>& kept) {
+  RowLines some;
+  for (std::size_t k = 0; k < runs_.size(); ++k) {
+    const std::size_t end = k + 1 < runs_.size() ? runs_[k + 1].row : size_;
+    for (std::size_t row = runs_[k].row; row < end; ++row)
+      if (kept[row]) some.add(runs_[k].line + (row - runs_[k].row));
+  }
+  *this = std::move(some);
 }
 
 Place RecordTable::place(std::size_t row, std::size_t column) const {
@@ -134,7 +161,7 @@ void RecordTable::keep(const std::vector<bool>& kept) {
     values.resize(next);
   };
   for (std::vector<double>& column : columns) compact(column);
-  if (!lines.empty()) compact(lines);
+  lines.keep(kept);
   if (!cell) return;
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < kept.size(); ++i)
@@ -185,26 +212,20 @@ RecordTable read_table(const std::filesystem::path& file, const RecordFormat& fo
 }
 
 std::string_view TextCells::Rows::line(std::size_t row) const {
-  return std::string_view(*text).substr(begins[row], lengths[row]);
-}
-
-std::size_t TextCells::Rows::number(std::size_t row) const {
-  const auto after = std::upper_bound(runs.begin(), runs.end(), row,
-                                      [](std::size_t at, const auto& run) { return at < run.first; });
-  const auto& [first, number] = *std::prev(after);
-  return number + (row - first);
+  const Mark& mark = *std::prev(std::ranges::upper_bound(marks, row, {}, &Mark::row));
+  std::string_view rest = std::string_view(*text).substr(mark.begin);
+  std::string_view line = take_line(rest);
+  for (std::size_t at = mark.row; at < row; ++at) line = take_line(rest);
+  return line;
 }
 
 TextCells::TextCells(std::string file, std::shared_ptr<const std::string> text)
-    : rows_(std::make_shared<Rows>(Rows{std::move(file), std::move(text), {}, {}, {}})) {}
+    : rows_(std::make_shared<Rows>(Rows{std::move(file), std::move(text), {}, {}})) {}
 
-void TextCells::add(std::string_view line, std::size_t number) {
-  constexpr std::size_t longest = std::numeric_limits<std::uint32_t>::max();
-  const std::size_t row = rows_->begins.size();
-  if (rows_->runs.empty() || number != rows_->runs.back().second + (row - rows_->runs.back().first))
-    rows_->runs.emplace_back(row, number);
-  rows_->begins.push_back(static_cast<std::size_t>(line.data() - rows_->text->data()));
-  rows_->lengths.push_back(static_cast<std::uint32_t>(std::min(line.size(), longest)));
+void TextCells::add(std::string_view line, std::size_t number, std::size_t count) {
+  const std::size_t row = rows_->lines.size();
+  if (rows_->lines.add(number, count) || row + count > rows_->marks.back().row + most_rows)
+    rows_->marks.push_back({row, static_cast<std::size_t>(line.data() - rows_->text->data())});
 }
 
 std::function<TextField(std::size_t, std::size_t)> TextCells::cells(char separator,
@@ -215,9 +236,9 @@ std::function<TextField(std::size_t, std::size_t)> TextCells::cells(char separat
     split_fields(line, separator, fields);
     const std::size_t at = columns.empty() ? column : columns[column];
     if (at >= fields.size()) split_fields(line, separator, fields, true);  // it may hold nothing
-    if (at >= fields.size()) return TextField{{rows->file, rows->number(row), 1}, ""};
+    if (at >= fields.size()) return TextField{{rows->file, rows->lines[row], 1}, ""};
     const auto offset = static_cast<std::size_t>(fields[at].data() - line.data());
-    return TextField{{rows->file, rows->number(row), offset + 1}, std::string(fields[at])};
+    return TextField{{rows->file, rows->lines[row], offset + 1}, std::string(fields[at])};
   };
 }
 

@@ -28,6 +28,7 @@ namespace beamid::experiments {
 class PrintedPrecision {
  public:
   void add(std::string_view token);
+  void add(const PrintedPrecision& other);  ///< of more numbers of the column
 
   /// That of numbers of so many significant digits: 7 in single precision, 15 in double.
   static PrintedPrecision of_digits(int digits);
@@ -62,6 +63,26 @@ struct Clock {
   double interval = 0.0;  ///< [s]
 };
 
+/// Lines of a file in which rows stand, by runs of lines that follow each other.
+class RowLines {
+ public:
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  std::size_t operator[](std::size_t row) const;  ///< from 1; @param row of fewer than size(), from 0
+  void clear() { runs_.clear(), size_ = 0; }
+  void keep(const std::vector<bool>& kept);
+
+  /// So many rows in lines from this one on. @returns whether they do not go on from the row before
+  bool add(std::size_t line, std::size_t count = 1);
+
+ private:
+  struct Run {
+    std::size_t row, line;  ///< its first
+  };
+  std::vector<Run> runs_;
+  std::size_t size_ = 0;
+};
+
 /// One field of a text file.
 struct TextField {
   Place place;
@@ -81,7 +102,7 @@ struct RecordTable {
   std::optional<double> stated_rate;         ///< in words above the columns, for files without stamps [Hz]
   std::optional<std::pair<Quantity, double>> stated_unit;  ///< likewise, of all columns but time; to SI units
   std::size_t header_line = 0;                             ///< where the names stand; 0 where unknown
-  std::vector<std::size_t> lines;                          ///< of the rows; empty in binary files
+  RowLines lines;                                          ///< of the rows; empty in binary files
   std::vector<std::size_t> skipped_lines;  ///< left out already, as they have another number of columns
   std::function<TextField(std::size_t row, std::size_t column)> cell;  ///< absent in binary files
   std::vector<std::string> remarks;                                    ///< sentences for reports
@@ -89,6 +110,9 @@ struct RecordTable {
 
   std::size_t width() const { return columns.size(); }
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
+
+  /// Of a row from 0: the line in which it stands, or its number from 1.
+  std::size_t line_of(std::size_t row) const { return row < lines.size() ? lines[row] : row + 1; }
 
   /// Of a value, or of the file where nothing finer is known.
   Place place(std::size_t row, std::size_t column) const;
@@ -153,30 +177,32 @@ Number number_of_bytes(const char* bytes, bool swapped) {
 
 // Where the fields of rows of text stand, found again when a message needs it.
 
-/// Keeps a text and where its rows begin: 12 bytes a row, numbers of lines by their runs.
+/// Keeps a text and where every sixteenth of its rows begins, at least: one byte a row.
 class TextCells {
  public:
   TextCells(std::string file, std::shared_ptr<const std::string> text);
 
-  /// @param line a view into the text; @param number its line's, from 1.
-  void add(std::string_view line, std::size_t number);
+  /// Rows in lines that follow each other.
+  /// @param line the first, a view into the text; @param number its line's, from 1; @param count at most 16
+  void add(std::string_view line, std::size_t number, std::size_t count = 1);
+
+  static constexpr std::size_t most_rows = 16;  ///< between one mark and the next
 
   /// @param columns of the text that the table's columns are, from 0; empty: the same ones.
   std::function<TextField(std::size_t, std::size_t)> cells(char separator,
                                                            std::vector<std::size_t> columns = {}) const;
 
  private:
+  struct Mark {
+    std::size_t row, begin;  ///< of the text
+  };
   struct Rows {
     std::string file;
     std::shared_ptr<const std::string> text;
-    std::vector<std::size_t> begins;
-    std::vector<std::uint32_t> lengths;
-    /// Of rows from the first of a pair on, the number of that row's line; each row a line until the next
-    /// pair.
-    std::vector<std::pair<std::size_t, std::size_t>> runs;
+    RowLines lines;
+    std::vector<Mark> marks;
 
     std::string_view line(std::size_t row) const;
-    std::size_t number(std::size_t row) const;
   };
   std::shared_ptr<Rows> rows_;
 };

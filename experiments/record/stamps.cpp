@@ -279,6 +279,21 @@ double mean_step(const std::vector<double>& stamps) {
   return stamps.size() < 2 ? 0.0 : (stamps.back() - stamps.front()) / static_cast<double>(stamps.size() - 1);
 }
 
+std::pair<double, double> range_of_steps(const std::vector<double>& stamps) {
+  std::pair range(stamps[1] - stamps[0], stamps[1] - stamps[0]);
+  for (std::size_t k = 2; k < stamps.size(); ++k) {
+    range.first = std::min(range.first, stamps[k] - stamps[k - 1]);
+    range.second = std::max(range.second, stamps[k] - stamps[k - 1]);
+  }
+  return range;
+}
+
+double usual_step(const std::vector<double>& stamps) {
+  std::vector<double> steps(stamps.size() - 1);
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k] = stamps[k + 1] - stamps[k];
+  return median(std::move(steps));
+}
+
 bool runs_evenly(const std::vector<double>& values) {
   constexpr double tolerated = 0.05;
   const double step = mean_step(values);
@@ -292,13 +307,12 @@ std::optional<EvenStamps> without_rounding(const std::vector<double>& times, dou
   // Rounding is half a resolution at most; 0.57 is the most that a line through 200 records left.
   constexpr double most_off = 0.65, none_off = 1e-6, least = 2e-3;
   const std::size_t size = times.size();
-  if (size < 3) return std::nullopt;
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < size; ++k) steps.push_back(times[k] - times[k - 1]);
-  const double usual = median(steps);
+  if (size < 3 || resolution <= least * range_of_steps(times).first) return std::nullopt;
+  const double usual = usual_step(times);
   if (!(resolution > least * usual && resolution < 0.5 * usual)) return std::nullopt;
   std::vector<double> count{0.0};
-  for (const double step : steps) count.push_back(count.back() + std::max(std::round(step / usual), 1.0));
+  for (std::size_t k = 1; k < size; ++k)
+    count.push_back(count.back() + std::max(std::round((times[k] - times[k - 1]) / usual), 1.0));
 
   double mean_count = 0.0, mean_time = 0.0, squares = 0.0, products = 0.0;
   for (std::size_t k = 0; k < size; ++k) {

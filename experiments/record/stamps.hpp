@@ -41,6 +41,12 @@ bool counts_samples(const std::vector<double>& values);
 /// Each above the one before it.
 bool rises(const std::vector<double>& values);
 
+/// The shortest and the longest step from one stamp to the next. @param stamps two at least
+std::pair<double, double> range_of_steps(const std::vector<double>& stamps);
+
+/// The median of the steps. @param stamps two at least
+double usual_step(const std::vector<double>& stamps);
+
 /// Rises by equal steps, to 5 %.
 bool runs_evenly(const std::vector<double>& values);
 

@@ -195,7 +195,8 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
         explained(R"(filter|pass|band|range|resol|cut|corner)"), of_all(R"(total|[0-9] ?ch\b)");
     const std::string behind = rest.substr(std::min(rest.size(), rest.find("hz") + 2));
     if (std::regex_search(behind, of_all)) return -1.0;
-    if (std::smatch other; std::regex_search(behind, other, second) && std::stod(other[1]) != stated->value &&
+    if (std::smatch other; std::regex_search(behind, other, second) &&
+                           parse_number(other[1].str()).value != stated->value &&
                            !std::regex_search(behind, explained))
       return -1.0;  // which of them
     const auto unit = samples_per_second(stated->unit);
@@ -205,7 +206,7 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
   static const std::regex of_others(
       R"(\b(?:max|min|total|aggregate|up to|gps|trigger|original|recommended)\b)");
   if (!found && std::regex_search(line, match, alone) && !std::regex_search(match.prefix().str(), of_others))
-    take(std::stod(match[1]));
+    take(parse_number(match[1].str()).value);
   return contradicts ? -1.0 : found;
 }
 
@@ -215,15 +216,16 @@ std::optional<double> stated_rate(std::string_view lines, char decimal) {
   static const std::regex fewer(
       R"(\b(?:decim\w*|downsampl\w*|averag\w*|resampl\w*|reduced by|every)[^0-9\n]{0,20}([0-9]+))");
   const std::string text = folded(lines);
-  if (std::smatch match; std::regex_search(text, match, fewer) && std::stod(match[1]) > 1.0) return {};
+  if (std::smatch match; std::regex_search(text, match, fewer) && parse_number(match[1].str()).value > 1.0)
+    return {};
   std::optional<double> found;
   for (std::string_view rest = text; !rest.empty();) {
     constexpr std::size_t longest = 400;
     const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
     static const std::regex channels(R"(, *c[0-9]+ ?- ?c?[0-9]+)");  // "INTERVALO DE MUESTREO, C1-C6 (s)"
-    const auto rate =
-        rate_of_line(std::regex_replace(std::string(line.substr(0, longest)), channels, ""), decimal);
+    if (line.size() > longest) continue;  // a regular expression would recurse per letter
+    const auto rate = rate_of_line(std::regex_replace(std::string(line), channels, ""), decimal);
     constexpr double tolerated = 0.02;
     if (rate && *rate < 0.0) return {};
     if (rate && found && std::abs(*rate / *found - 1.0) > tolerated) return {};  // which of them

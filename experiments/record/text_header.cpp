@@ -125,145 +125,218 @@ void DelimitedText::find_header(int header_lines) {
     take_comment();
 }
 
-bool DelimitedText::find_body() {
-  DelimitedText found(*this);
-  std::vector<EarlyLine> lines;
-  std::vector<std::vector<std::string_view>> fields;
-  std::size_t first = 0;
-  const std::size_t usual = width_across(rest_, separator_);
-  // Of a head whose rows are other than those of the record, which words part from them.
-  const auto is_in_head = [&](const EarlyLine& row) {
-    std::vector<std::string_view> cells;
-    split_fields(row.text, separator_ == '\0' ? separator_of(row.text) : separator_, cells, true);
-    if (usual == 0 || row.width == usual || cells.size() == usual) return false;
-    DelimitedText ahead(found);
-    for (std::size_t k = 0; k < most_early_lines && ahead.next_row(); ++k) {
-      ahead.split(ahead.line_);
-      if (ahead.fields_.size() == usual && is_row(ahead.fields_, true)) return false;
-      if (!holds_reading(ahead.fields_)) return true;
-    }
-    return false;
-  };
-  for (bool two = false; !two;) {
-    if (lines.size() == most_early_lines || !found.next_row()) return false;
-    found.split(found.line_);
-    if (!is_row(found.fields_, true) && separator_ == '\0') {  // "0,5 1,5": the commas are decimal
-      std::vector<std::string_view> parted;
-      split_fields(found.line_, ' ', parted);
-      if (parted.size() > 1 && all_numbers(parted, ',')) found.fields_ = parted;
-    }
-    lines.push_back({found.line_, found.line_number_, found.fields_.size(), is_row(found.fields_, true)});
-    fields.push_back(found.fields_);
-    if (lines.size() < 2) continue;
-    first = lines.size() - 2;
-    two = lines[first].rows && lines[first + 1].rows && lines[first].width == lines[first + 1].width &&
-          !is_in_head(lines[first]);
-  }
-  std::size_t width = lines[first].width;
-  if (counts_columns(fields[first]) && first == 0 && !counts_columns(fields[1]) &&
-      !std::ranges::all_of(fields[1], [](auto field) { return field.find_first_of(".,eE") == field.npos; })) {
-    lines[0].rows = false;  // names
-    first = 1;
-  }
-  const auto same_readings = [&](std::size_t line) {  // words beside the first rows are no header
-    if (fields[first][0].empty() && !fields[line][0].empty()) return false;  // a key before its values
-    for (std::size_t k = 0; k < width; ++k)
-      if (is_reading(fields[first][k]) && !is_reading(fields[line][k])) return false;
-    return true;
-  };
-  while (first > 0 && lines[first - 1].width == width && same_readings(first - 1) &&
-         !counts_columns(fields[first - 1]))
-    --first;
+/// The first rows of a text, and the lines above them that name their columns.
+class DelimitedText::Body {
+ public:
+  explicit Body(const DelimitedText& text)
+      : text_(text), found_(text), usual_(width_across(text.rest_, text.separator_)) {}
 
-  if (first > 0 && !holds_reading(fields[first - 1])) {  // the first rows may end in cells that hold nothing
+  bool find_first_rows();                   ///< false: there are none
+  bool has_rows_above() const;              ///< of as many columns, or next to the first rows
+  bool has_odd_line_above() const;          ///< between names and rows, one of the rows
+  void find_header();                       ///< what names the columns
+  bool has_names_of_another_width() const;  ///< and no header
+  DelimitedText taken() const;              ///< the text at its first row
+
+ private:
+  std::vector<std::string_view> cells_of(std::string_view line, char separator) const {
     std::vector<std::string_view> cells;
-    split_fields(lines[first].text, separator_of(lines[first - 1].text), cells, true);
-    if (cells.size() > width && cells.size() == fields[first - 1].size()) width = cells.size();
+    split_fields(line, separator == '\0' ? separator_of(line) : separator, cells, true);
+    return cells;
   }
-  const auto names_width = [&](std::size_t line) {
-    const std::string_view text = lines[line].text;
-    if (is_pair(text) && !labelled_) return false;  // "Station: ABC", "Units: g"
-    const bool titles = line > 0 && is_title(trimmed(text)) && lines[line - 1].text.find(':') != text.npos;
-    return !titles && !(is_statement(text) && !labelled_) && named(text, width).size() == width &&
-           (!holds_reading(fields[line]) || counts_columns(fields[line]));
-  };
-  const auto names = [&](std::size_t line) { return names_columns(named(lines[line].text, width)); };
-  const auto units_of = [&](std::size_t line) -> std::vector<std::string_view> {
-    std::vector<std::string_view> cells = named(lines[line].text, width);
-    if (cells.size() < width) split_fields(lines[line].text, separator_of(lines[line].text), cells, true);
-    while (cells.size() > width && trimmed(cells.back()).empty()) cells.pop_back();
-    if (lines[line].rows || cells.size() != width) return {};
-    if (are_units(cells)) return cells;
-    return line > 0 ? units_among(cells, named(lines[line - 1].text, width))
-                    : std::vector<std::string_view>();
-  };
-  for (std::size_t k = 0; k < first; ++k) {
-    const bool below_title = k > 0 && is_title(trimmed(lines[k - 1].text));
-    if (lines[k].rows && !below_title && (lines[k].width == width || k + 1 == first)) return false;
+  bool read_line();  ///< false: there is none
+  bool is_in_head(const EarlyLine& row) const;
+  void take_rows_above();
+  void take_empty_cells();
+  bool is_beside_first(std::size_t line) const;
+  bool is_word_line_above() const { return first_ > 0 && !holds_reading(fields_[first_ - 1]); }
+  bool may_name(std::size_t line) const;
+  bool names(std::size_t line) const { return names_columns(text_.named(lines_[line].text, width_)); }
+  std::vector<std::string_view> units_in(std::size_t line) const;
+  std::optional<std::size_t> header_above_units() const;
+
+  const DelimitedText& text_;
+  DelimitedText found_;
+  const std::size_t usual_;  ///< columns all across the text; 0: not one number of them
+  std::vector<EarlyLine> lines_;
+  std::vector<std::vector<std::string_view>> fields_;  ///< of the lines
+  std::size_t first_ = 0, width_ = 0;                  ///< line of the first row; columns
+  std::optional<std::size_t> header_, keyed_units_;    ///< lines
+};
+
+bool DelimitedText::Body::read_line() {
+  if (lines_.size() == most_early_lines || !found_.next_row()) return false;
+  found_.split(found_.line_);
+  if (!is_row(found_.fields_, true) && text_.separator_ == '\0') {  // "0,5 1,5": the commas are decimal
+    std::vector<std::string_view> parted;
+    split_fields(found_.line_, ' ', parted);
+    if (parted.size() > 1 && all_numbers(parted, ',')) found_.fields_ = parted;
   }
-  std::optional<std::size_t> header, nearest;
-  // Above units of all columns stand their names, be they numbers of channels.
-  for (std::size_t k = first; k-- > 1 && first - k <= most_header_lines && !header;)
-    if (width > 1 && !units_of(k).empty() && !lines[k - 1].rows && units_of(k - 1).empty() &&
-        named(lines[k - 1].text, width).size() == width)
-      header = k - 1;
-  for (std::size_t k = first; k-- > 0 && first - k <= most_header_lines && !header;) {
-    if (!names_width(k)) {
-      if (holds_reading(fields[k]) && !is_statement(lines[k].text)) break;
+  lines_.push_back({found_.line_, found_.line_number_, found_.fields_.size(), is_row(found_.fields_, true)});
+  fields_.push_back(found_.fields_);
+  return true;
+}
+
+// Of a head whose rows are other than those of the record, which words part from them.
+bool DelimitedText::Body::is_in_head(const EarlyLine& row) const {
+  if (usual_ == 0 || row.width == usual_ || cells_of(row.text, text_.separator_).size() == usual_)
+    return false;
+  DelimitedText ahead(found_);
+  for (std::size_t k = 0; k < most_early_lines && ahead.next_row(); ++k) {
+    ahead.split(ahead.line_);
+    if (ahead.fields_.size() == usual_ && is_row(ahead.fields_, true)) return false;
+    if (!holds_reading(ahead.fields_)) return true;
+  }
+  return false;
+}
+
+bool DelimitedText::Body::find_first_rows() {
+  for (bool two = false; !two;) {
+    if (!read_line()) return false;
+    if (lines_.size() < 2) continue;
+    first_ = lines_.size() - 2;
+    two = lines_[first_].rows && lines_[first_ + 1].rows &&
+          lines_[first_].width == lines_[first_ + 1].width && !is_in_head(lines_[first_]);
+  }
+  width_ = lines_[first_].width;
+  take_rows_above();
+  take_empty_cells();
+  return true;
+}
+
+// Words beside numbers in the first rows are no header; numbers that count the columns are one.
+void DelimitedText::Body::take_rows_above() {
+  const auto is_whole = [](std::string_view field) { return field.find_first_of(".,eE") == field.npos; };
+  if (counts_columns(fields_[first_]) && first_ == 0 && !counts_columns(fields_[1]) &&
+      !std::ranges::all_of(fields_[1], is_whole)) {
+    lines_[0].rows = false;  // names
+    first_ = 1;
+  }
+  while (first_ > 0 && lines_[first_ - 1].width == width_ && is_beside_first(first_ - 1) &&
+         !counts_columns(fields_[first_ - 1]))
+    --first_;
+}
+
+bool DelimitedText::Body::is_beside_first(std::size_t line) const {
+  if (fields_[first_][0].empty() && !fields_[line][0].empty()) return false;  // a key before its values
+  for (std::size_t k = 0; k < width_; ++k)
+    if (is_reading(fields_[first_][k]) && !is_reading(fields_[line][k])) return false;
+  return true;
+}
+
+// The first rows may end in cells that hold nothing.
+void DelimitedText::Body::take_empty_cells() {
+  if (!is_word_line_above()) return;
+  const std::size_t count = cells_of(lines_[first_].text, separator_of(lines_[first_ - 1].text)).size();
+  if (count > width_ && count == fields_[first_ - 1].size()) width_ = count;
+}
+
+bool DelimitedText::Body::may_name(std::size_t line) const {
+  const std::string_view text = lines_[line].text;
+  if (is_pair(text) && !text_.labelled_) return false;  // "Station: ABC", "Units: g"
+  const bool titles = line > 0 && is_title(trimmed(text)) && lines_[line - 1].text.find(':') != text.npos;
+  return !titles && !(is_statement(text) && !text_.labelled_) && text_.named(text, width_).size() == width_ &&
+         (!holds_reading(fields_[line]) || counts_columns(fields_[line]));
+}
+
+std::vector<std::string_view> DelimitedText::Body::units_in(std::size_t line) const {
+  std::vector<std::string_view> cells = text_.named(lines_[line].text, width_);
+  if (cells.size() < width_) cells = cells_of(lines_[line].text, separator_of(lines_[line].text));
+  while (cells.size() > width_ && trimmed(cells.back()).empty()) cells.pop_back();
+  if (lines_[line].rows || cells.size() != width_) return {};
+  if (are_units(cells)) return cells;
+  return line > 0 ? units_among(cells, text_.named(lines_[line - 1].text, width_))
+                  : std::vector<std::string_view>();
+}
+
+bool DelimitedText::Body::has_rows_above() const {
+  for (std::size_t k = 0; k < first_; ++k) {
+    const bool below_title = k > 0 && is_title(trimmed(lines_[k - 1].text));
+    if (lines_[k].rows && !below_title && (lines_[k].width == width_ || k + 1 == first_)) return true;
+  }
+  return false;
+}
+
+bool DelimitedText::Body::has_odd_line_above() const {
+  if (first_ == 0 || is_word_line_above() || may_name(first_ - 1) || is_statement(lines_[first_ - 1].text))
+    return false;
+  if (fields_[first_][0].empty() && !fields_[first_ - 1][0].empty()) return false;  // a key
+  for (std::size_t k = 0; k < first_; ++k)
+    if (lines_[first_ - 1].width == width_ || (may_name(k) && names(k))) return true;
+  return false;
+}
+
+// Above units of all columns stand their names, be they numbers of channels.
+std::optional<std::size_t> DelimitedText::Body::header_above_units() const {
+  for (std::size_t k = first_; k-- > 1 && first_ - k <= most_header_lines;)
+    if (width_ > 1 && !units_in(k).empty() && !lines_[k - 1].rows && units_in(k - 1).empty() &&
+        text_.named(lines_[k - 1].text, width_).size() == width_)
+      return k - 1;
+  return {};
+}
+
+void DelimitedText::Body::find_header() {
+  std::optional<std::size_t> nearest;
+  header_ = header_above_units();
+  for (std::size_t k = first_; k-- > 0 && first_ - k <= most_header_lines && !header_;) {
+    if (!may_name(k)) {
+      if (holds_reading(fields_[k]) && !is_statement(lines_[k].text)) break;
       continue;
     }
-    if (names(k)) header = k;
-    if (!nearest && first - k <= 2) nearest = k;
+    if (names(k)) header_ = k;
+    if (!nearest && first_ - k <= 2) nearest = k;
   }
-  const bool is_keyed = first > 0 && fields[first][0].empty() && !fields[first - 1][0].empty();
-  if (first > 0 && !is_keyed && holds_reading(fields[first - 1]) && !names_width(first - 1) &&
-      !is_statement(lines[first - 1].text))
-    for (std::size_t k = 0; k < first; ++k)  // a line between names and rows is one of the rows
-      if (lines[first - 1].width == width || (names_width(k) && names(k))) return false;
-  if (!header && nearest && *nearest > 0 && first - *nearest == 1 && names_width(*nearest - 1)) --*nearest;
-  if (!header) header = nearest;
+  if (!header_ && nearest && *nearest > 0 && first_ - *nearest == 1 && may_name(*nearest - 1)) --*nearest;
+  if (!header_) header_ = nearest;
   // "TraceName","CH1"; "VUnit","V"; then rows that begin with a blank.
-  std::optional<std::size_t> keyed_units;
-  for (std::size_t k = 0; k < first && fields[first][0].empty(); ++k) {
-    const std::string key = folded(unquoted(fields[k][0]));
-    if (fields[k].size() == width && key == "tracename") header = k;
-    if (fields[k].size() == width && key == "vunit") keyed_units = k;
+  for (std::size_t k = 0; k < first_ && fields_[first_][0].empty(); ++k) {
+    const std::string key = folded(unquoted(fields_[k][0]));
+    if (fields_[k].size() == width_ && key == "tracename") header_ = k;
+    if (fields_[k].size() == width_ && key == "vunit") keyed_units_ = k;
   }
-  if (!header && first > 0) {  // names of more or fewer columns than the rows have
-    const char parted_by = separator_of(lines[first - 1].text);
-    if (fields[first - 1].size() > 1 && !holds_reading(fields[first - 1]) &&
-        !is_statement(lines[first - 1].text) && names_columns(fields[first - 1]) &&
-        (parted_by != ' ' || separator_of(lines[first].text) == ' '))
-      return false;
-  }
+}
 
-  found.line_ = lines[first].text, found.line_number_ = lines[first].number;
-  found.rest_ =
-      rest_.substr(static_cast<std::size_t>(found.line_.data() + found.line_.size() - rest_.data()));
-  found.rest_.remove_prefix(
-      std::min(found.rest_.size(), std::size_t{found.rest_.starts_with("\r\n") ? 2u : 1u}));
+bool DelimitedText::Body::has_names_of_another_width() const {
+  if (header_ || !is_word_line_above()) return false;
+  const EarlyLine& above = lines_[first_ - 1];
+  const std::vector<std::string_view>& fields = fields_[first_ - 1];
+  return fields.size() > 1 && !is_statement(above.text) && names_columns(fields) &&
+         (separator_of(above.text) != ' ' || separator_of(lines_[first_].text) == ' ');
+}
+
+DelimitedText DelimitedText::Body::taken() const {
+  DelimitedText found(found_);
+  found.go_back_to(lines_[first_], text_.rest_);
   found.choose_separator();
-  if (header) {
+  if (header_) {
     std::vector<std::string_view> units;
-    std::size_t last = *header;  // of the lines that are understood
-    for (std::size_t k = first; k-- > (*header > 0 ? *header - 1 : 0);)
-      if (auto cells = k == *header ? units : units_of(k); !cells.empty())
-        units = std::move(cells), last = std::max(*header, k);
-    if (keyed_units) units = fields[*keyed_units], units[0] = {};
-    if (units.empty() && *header + 1 < first && names_width(*header + 1))
-      units = found.named(lines[*header + 1].text, width), last = *header + 1;
-    for (std::size_t k = last + 1; k < first; ++k)
-      if (tolerant_ || (begins_with_digit(fields[k]) && !is_statement(lines[k].text)))
-        found.skipped_.push_back(lines[k].number);
+    std::size_t last = *header_;  // of the lines that are understood
+    for (std::size_t k = first_; k-- > (*header_ > 0 ? *header_ - 1 : 0);)
+      if (auto cells = k == *header_ ? units : units_in(k); !cells.empty())
+        units = std::move(cells), last = std::max(*header_, k);
+    if (keyed_units_) units = fields_[*keyed_units_], units[0] = {};
+    if (units.empty() && *header_ + 1 < first_ && may_name(*header_ + 1))
+      units = found.named(lines_[*header_ + 1].text, width_), last = *header_ + 1;
+    for (std::size_t k = last + 1; k < first_; ++k)
+      if (text_.tolerant_ || (begins_with_digit(fields_[k]) && !is_statement(lines_[k].text)))
+        found.skipped_.push_back(lines_[k].number);
     for (const std::string_view unit : units) found.units_.emplace_back(unquoted(unit));
-    found.header_line_ = lines[*header].number;
-    found.header_text_ = trimmed(lines[*header].text);
-    found.name_columns(lines[*header].text, found.header_line_);
+    found.header_line_ = lines_[*header_].number;
+    found.header_text_ = trimmed(lines_[*header_].text);
+    found.name_columns(lines_[*header_].text, found.header_line_);
   } else {
     found.take_comment();
   }
   found.split_row();
-  *this = std::move(found);
+  return found;
+}
+
+bool DelimitedText::find_body() {
+  Body body(*this);
+  if (!body.find_first_rows() || body.has_rows_above() || body.has_odd_line_above()) return false;
+  body.find_header();
+  if (body.has_names_of_another_width()) return false;
+  *this = body.taken();
   return true;
 }
 
@@ -281,9 +354,7 @@ void DelimitedText::find_rows() {
       const EarlyLine& first = before[before.size() - 2];
       if (!last.rows || !first.rows || last.width != first.width) continue;
 
-      line_ = first.text, line_number_ = first.number;
-      rest_ = whole.substr(static_cast<std::size_t>(first.text.data() + first.text.size() - whole.data()));
-      rest_.remove_prefix(std::min(rest_.size(), std::size_t{rest_.starts_with("\r\n") ? 2u : 1u}));
+      go_back_to(first, whole);
       choose_separator();
       before.resize(before.size() - 2);
       const auto names_width = [&](const EarlyLine& line) {

@@ -354,4 +354,16 @@ std::optional<double> convertible_unit(std::string_view spelling, std::optional<
   return factor && *factor >= wanted.smallest && *factor <= wanted.largest ? factor : std::nullopt;
 }
 
+std::string symbol_of_time(double factor) {
+  return factor == 1.0       ? "s"
+         : factor == 1e-3    ? "ms"
+         : factor == 1e-6    ? "us"
+         : factor == 1e-9    ? "ns"
+         : factor == 1e-7    ? "100 ns"
+         : factor == 60.0    ? "min"
+         : factor == 3600.0  ? "h"
+         : factor == 86400.0 ? "days"
+                             : fmt::format("{:g} s", factor);
+}
+
 }  // namespace beamid::experiments

@@ -89,6 +89,9 @@ std::optional<double> convertible_unit(std::string_view spelling, std::optional<
 /// @param quantity absent: time
 std::optional<double> unit_factor(std::string_view symbol, std::optional<Quantity> quantity);
 
+/// "s", "ms", "min" of so many seconds.
+std::string symbol_of_time(double factor);
+
 /// Symbols, for messages and checks.
 std::vector<std::string> symbols(const std::vector<Unit>& units);
 

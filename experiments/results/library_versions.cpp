@@ -1,5 +1,3 @@
-#include "experiments/results/library_versions.hpp"
-
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <vtkVersionMacros.h>
@@ -7,6 +5,8 @@
 #include <toml++/toml.h>
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+
+#include "experiments/results/results.hpp"
 
 namespace beamid::experiments {
 

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/results/library_versions.hpp"
 #include "experiments/results/report_page.hpp"
 #include "experiments/results/text.hpp"
 #include "experiments/results/vtk/drawing.hpp"

@@ -127,4 +127,9 @@ void print(std::ostream& terminal, const Results& results, const Page& page);
 /// A table as in table.hpp, on a page of any width.
 void print(std::ostream& stream, const Table& table, const Page& paper);
 
+// What this program was made with.
+
+/// "beamid", the compiler and the libraries whose headers state it, with their versions.
+std::vector<std::pair<std::string, std::string>> library_versions();
+
 }  // namespace beamid::experiments

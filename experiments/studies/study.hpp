@@ -15,6 +15,9 @@ class Study {
 };
 
 using StudyRegistry = filters::Registry<Study>;
-StudyRegistry& study_registry();
+inline StudyRegistry& study_registry() {
+  static StudyRegistry registry("study");
+  return registry;
+}
 
 }  // namespace beamid::experiments

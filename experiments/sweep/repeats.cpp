@@ -229,7 +229,7 @@ std::shared_ptr<const Repeats::Common> Repeats::common_of(std::size_t number) co
   common->one_place = (rows.rowwise() - rows.row(0)).isZero(0.0);
   common->noise =
       assumed_noise(experiment, common->clean, simulated_noise(common->clean, common->sensor_noise));
-  common->frequency_hz = fem::modes(fem::assemble(truth.structure, truth.elements), 1).frequency_hz()[0];
+  common->frequency_hz = fem::lowest_frequency_hz(fem::assemble(truth.structure, truth.elements));
   for (const Unknown& unknown : common->model.unknowns)
     common->truth.push_back(true_value(truth, common->true_model.equivalent_mass, unknown));
   common->bound = bounds(*common);

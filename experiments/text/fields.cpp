@@ -100,6 +100,14 @@ std::size_t quoted_length(std::string_view rest, char separator) {
 
 }  // namespace
 
+std::string_view take_line(std::string_view& rest) {
+  const auto ends = [](char letter) { return letter == '\n' || letter == '\r'; };
+  const auto end = static_cast<std::size_t>(std::ranges::find_if(rest, ends) - rest.begin());
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(std::min(rest.size(), end + (rest.substr(end).starts_with("\r\n") ? 2 : 1)));
+  return line;
+}
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(blanks);
   if (begin == std::string_view::npos) return text.substr(0, 0);
@@ -143,6 +151,13 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
     begin = blank ? std::min(line.find_first_not_of(blanks, end), line.size() + 1) : end + 1;
   }
   while (!empty_ends && !fields.empty() && fields.back().empty()) fields.pop_back();
+}
+
+std::string toml_string(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char letter : clean_text(text))
+    quoted += (letter == '"' || letter == '\\' ? "\\" : "") + std::string(1, letter);
+  return quoted + '"';
 }
 
 std::string csv_field(std::string_view raw) {

@@ -22,6 +22,9 @@ std::string clean_lines(std::string_view text);
 /// Where the first control character, a tab or a line break too, begins; npos: nowhere.
 std::size_t find_control(std::string_view text);
 
+/// The first line of a text, which LF, CRLF or CR ends, without its end. @param rest what is behind it then
+std::string_view take_line(std::string_view& rest);
+
 /// Without blanks and tabs around it.
 std::string_view trimmed(std::string_view text);
 
@@ -41,6 +44,9 @@ char separator_of(std::string_view line);
 /// @param empty_ends whether empty fields at the end of the line count
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
                   bool empty_ends = false);
+
+/// A text, cleaned, as a basic string of TOML with its quotes.
+std::string toml_string(std::string_view text);
 
 /// A text, cleaned (fields.hpp), as a field that split_fields() and field_text() give back: quoted where
 /// it holds a comma, a quote or a line break, or begins or ends with a blank.

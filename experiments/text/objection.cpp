@@ -79,8 +79,8 @@ const std::vector<ObjectionKind>& objection_kinds() {
        "as close_modes; damping ratios differ by a factor of 1.5, or the modes by a quarter of a cycle at "
        "most",
        "Either frequency or damping depends on amplitude, or there are two modes. Intervals are widened."},
-      {"few_lines", modes, "lines of the spectrum within a mode's band",
-       "Too few periods: the standard deviation of the damping ratio is uncertain."},
+      {"excluded_lines", modes, "lines of a mode's band that are a machine's or another mode's, of all in it",
+       "The band has other lines than the mode's: they are excluded, and intervals grow."},
       {"lines", modes, "line of the spectrum that no mode explains",
        "A mode was missed, or lies outside the band."},
       {"met_in_motion", modes, "motion before a hit", "The structure still moved when it was hit."},

@@ -83,9 +83,12 @@ std::string from_utf16(const std::string& bytes, bool high) {
   };
   for (std::size_t at = 2; at + 1 < bytes.size(); at += 2) {
     unsigned code = unit(at);
-    if (code >= 0xD800 && code < 0xDC00 && at + 3 < bytes.size()) {
-      code = 0x10000 + ((code - 0xD800) << 10) + (unit(at + 2) - 0xDC00);
-      at += 2;
+    constexpr unsigned replacement = 0xFFFD;  // of half a pair of surrogates
+    if (code >= 0xD800 && code < 0xE000) {
+      const unsigned second = at + 3 < bytes.size() ? unit(at + 2) : 0;
+      const bool pair = code < 0xDC00 && second >= 0xDC00 && second < 0xE000;
+      code = pair ? 0x10000 + ((code - 0xD800) << 10) + (second - 0xDC00) : replacement;
+      if (pair) at += 2;
     }
     if (code < 0x80) {
       text += static_cast<char>(code);

@@ -252,7 +252,7 @@ DampingLawStudy study_damping_law(const Experiment& experiment, const Record& wh
   const ModelSetting setting = model_setting(experiment, record, experiment.reduction, folder);
   ModalAnalysisSettings modal;
   modal.expected_frequency_hz =
-      fem::modes(fem::assemble(experiment.structure, experiment.elements), 1).frequency_hz()[0];
+      fem::lowest_frequency_hz(fem::assemble(experiment.structure, experiment.elements));
   study.modal =
       dominant_mode(record.samples.row(output_channels(record)[0]).transpose(), record.interval(), modal);
   take_amplitudes(record, study);

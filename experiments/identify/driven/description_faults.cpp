@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "experiments/identify/driven/driven_part.hpp"
+#include "experiments/identify/driven/other_models.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/model_check/candidates.hpp"
 #include "experiments/models/estimates.hpp"
@@ -23,8 +24,9 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double worth_following = 0.1, mostly = 0.5, sure_score = 5.0;  // of what is left; deviations
-constexpr double hopeless = 2.5;  // times what is left, after a few steps
+constexpr double worth_following = 0.1, mostly = 0.5;  // of what is left
+constexpr double hopeless = 2.5;                       // times what is left, after a few steps
+constexpr double tangent = 2e-5;  // of a change that counts: a resonance moves by far less than its width
 
 /// Of a long record every so many lines: each costs all trials alike. @returns one of how many
 Index keep_few_lines(DrivenProblem& problem) {
@@ -34,33 +36,6 @@ Index keep_few_lines(DrivenProblem& problem) {
   lines = thinned(lines, stride);
   return stride;
 }
-
-/// The model of another description.
-class OtherModels {
- public:
-  OtherModels(const Experiment& experiment, const Record& record, const Choice& reduction,
-              const std::filesystem::path& folder)
-      : experiment_(experiment), record_(record), reduction_(reduction), folder_(folder) {}
-
-  JointModel of(const fem::Structure& structure) const {
-    Experiment other = experiment_;
-    other.structure = structure;
-    return of(other);
-  }
-  JointModel of(const Experiment& other) const { return made(other, record_); }
-  JointModel of(const Record& other) const { return made(experiment_, other); }
-
- private:
-  const Experiment& experiment_;
-  const Record& record_;
-  const Choice& reduction_;
-  const std::filesystem::path& folder_;
-
-  JointModel made(const Experiment& experiment, const Record& record) const {
-    const ModelSetting setting = model_setting(experiment, record, reduction_, folder_);
-    return std::move(*model_registry().make(experiment.model.name, experiment.model.options, setting));
-  }
-};
 
 /// The unknowns fitted anew, if a few steps get anywhere. @param most of what is left after these
 std::optional<DrivenFit> promising_fit(const DrivenProblem& problem, const VectorXd& from, double most) {
@@ -80,7 +55,7 @@ struct FollowedChange {
 FollowedChange followed(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
                         const Candidate& candidate, const VectorXd& theta, double first,
                         const VectorXd& moved_per_change, double whole) {
-  constexpr int rounds = 4;
+  constexpr int rounds = 8;
   FollowedChange best;
   best.left = std::numeric_limits<double>::infinity();
   double x = first;
@@ -93,7 +68,7 @@ FollowedChange followed(const DrivenProblem& problem, const OtherModels& models,
     const auto fit = promising_fit(there, from, round == 0 ? hopeless * whole : best.left);
     if (!fit) break;
     const LineScores left(there, fit->theta);
-    const double step = 0.02 * candidate.scale();
+    const double step = tangent * candidate.scale();
     const JointModel moved = models.of(candidate.changed(experiment.structure, x + step));
     const auto score = left.score(left.change_of(model, moved) / step);
     if (!(left.left().squaredNorm() < best.left) || !score) break;
@@ -137,7 +112,7 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
     if (candidate.of_clock || is_asked(experiment, candidate)) continue;
     if (!weighed && candidate.weighs_all) continue;
     try {
-      const double step = 0.02 * candidate.scale();
+      const double step = tangent * candidate.scale();
       const JointModel model = models.of(candidate.changed(experiment.structure, step));
       const auto score = left.score(left.change_of(described, model) / step);
       if (!score) continue;
@@ -277,87 +252,6 @@ void add_places(const DrivenProblem& problem, const OtherModels& models, const E
   }
 }
 
-// One damping ratio of all modes, where each may have its own.
-
-/// |z| of the same significance as chi^2 of so many degrees of freedom [wilson1931].
-double normal_of_chi_squared(double value, double freedom) {
-  const double spread = 2.0 / (9.0 * freedom);
-  return (std::cbrt(value / freedom) - 1.0 + spread) / std::sqrt(spread);
-}
-
-/// The place of the damping ratio of all modes among the parameters asked; absent where there is none, or
-/// others beside it.
-std::optional<std::size_t> common_ratio(const Experiment& experiment, const JointModel& model) {
-  std::optional<std::size_t> place;
-  if (model.unknowns.size() != experiment.parameters.size()) return {};
-  for (std::size_t j = 0; j < experiment.parameters.size(); ++j) {
-    const ParameterChoice& asked = experiment.parameters[j];
-    if (asked.quantity != model.unknowns[j].quantity) return {};
-    if (asked.quantity == "damping_ratio" && (place || asked.mode)) return {};
-    if (asked.quantity == "damping_ratio") place = j;
-  }
-  return std::holds_alternative<fem::ModalDamping>(experiment.damping) ? place : std::nullopt;
-}
-
-/// What ratios of their own of the modes in the band, and to an octave above it, explain beyond the common
-/// one, all together: with D their slopes beyond J, s = D^T r, and V = sum_k d_k d_k^T r'_k^2 over the lines,
-/// r' what is left with them, s^T V^-1 s is chi^2 [white1982].
-void add_modal_ratios(const DrivenProblem& problem, const OtherModels& models, const Experiment& experiment,
-                      const LineScores& left, const VectorXd& theta, std::vector<DescriptionFault>& faults) {
-  constexpr Index most_modes = 12;
-  const std::optional<std::size_t> common = common_ratio(experiment, *problem.model);
-  const double highest = 2.0 * problem.parts.front().omega.maxCoeff();
-  const Index modes =
-      std::min<Index>(most_modes, (problem.model->mode_frequencies.array() < highest).count());
-  if (!common || modes < 2) return;
-  const auto at = static_cast<Index>(*common), kept = theta.size() - 1, count = kept + modes;
-  const Unknown& ratio = problem.model->unknowns[*common];
-
-  Experiment other = experiment;
-  const ParameterChoice asked = other.parameters[*common];
-  other.damping = fem::ModalDamping{{ratio.to_physical(theta[at])}};
-  other.parameters.erase(other.parameters.begin() + static_cast<std::ptrdiff_t>(*common));
-  for (Index m = 0; m < modes; ++m) {
-    other.parameters.push_back(asked);
-    other.parameters.back().mode = static_cast<int>(m) + 1;
-    other.parameters.back().name.clear();
-  }
-  const JointModel model = models.of(other);
-  DrivenProblem there = problem;
-  there.model = &model;
-  std::vector<Index> from(static_cast<std::size_t>(count), at);  // of theta
-  for (Index j = 0; j < kept; ++j) from[static_cast<std::size_t>(j)] = j < at ? j : j + 1;
-  there.prior.mean = problem.prior.mean(from);
-  const MatrixXd before = problem.prior.marginal(0, theta.size());
-  MatrixXd covariance = MatrixXd::Zero(count, count);
-  covariance.topLeftCorner(kept, kept) = before(from, from).topLeftCorner(kept, kept);
-  covariance.diagonal().tail(modes).setConstant(before(at, at));
-  there.prior.covariance = covariance, there.prior.factor.resize(0, 0);
-
-  const VectorXd start = theta(from);
-  const LineScores all(there, start);
-  const double score =
-      normal_of_chi_squared(left.together(all.slopes().rightCols(modes)), static_cast<double>(modes - 1));
-  if (!(score > sure_score)) return;
-  const DrivenFit fit = fit_driven_from(there, start, 20);
-  const double whole = evaluate_driven(problem, theta).cost;
-  if (!(fit.cost < whole)) return;
-  const VectorXd deviation = fit.covariance(there.prior).diagonal().cwiseSqrt();
-  std::string sentence = "the damping ratio is not one of all modes: by the record";
-  for (Index m = 0; m < modes; ++m) {
-    const Unknown& own = model.unknowns[static_cast<std::size_t>(kept + m)];
-    const double eta = fit.theta[kept + m], value = own.to_physical(eta),
-                 upper = own.to_physical(eta + quantile_95 * deviation[kept + m]);
-    sentence +=
-        fmt::format("{} {:.3g} +- {:.2g} %{}", m == 0 ? "" : ",", 100.0 * value, 100.0 * (upper - value),
-                    m + 1 == modes ? fmt::format(" in modes 1 to {}", modes) : "");
-  }
-  sentence += ", which [[parameters]] with mode = 1, 2, ... determine";
-  VectorXd moved = VectorXd::Zero(theta.size());
-  for (Index j = 0; j < kept; ++j) moved[from[static_cast<std::size_t>(j)]] = fit.theta[j] - start[j];
-  faults.push_back({std::move(sentence), score, 1.0 - fit.cost / whole, std::move(moved)});
-}
-
 /// With the estimates as guesses: a model takes the modes of its damping, for one, from there.
 Experiment at_estimates(Experiment experiment, const JointModel& model, const VectorXd& theta) {
   const std::size_t count = std::min(experiment.parameters.size(), model.unknowns.size());
@@ -395,7 +289,7 @@ DescriptionTests description_tests(const Experiment& experiment, const Record& r
     if (problem->input_noise.size() > 0) add_lags(record, left, faults);
     if (fit.left_share > misplaced)
       add_places(*problem, as_described, experiment, record, left, theta, faults);
-    add_modal_ratios(*problem, models, there, left, theta, faults);
+    add_other_damping(*problem, models, there, left, theta, faults);
   } catch (const std::runtime_error&) {  // no motion at these unknowns
   }
   for (DescriptionFault& fault : faults)

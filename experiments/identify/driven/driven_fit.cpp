@@ -337,7 +337,7 @@ DrivenFit weigh_by_residual(DrivenProblem& problem, const VectorXd& theta) {
   return fit;
 }
 
-std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
+std::optional<DrivenFit> fit_driven(DrivenProblem& problem, int most_draws) {
   constexpr int first_steps = 12;
   constexpr std::size_t most_valleys = 4;
   constexpr int draws = 6;
@@ -371,6 +371,12 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem) {
             well_damped(*problem.model, middle + draw_spread * known.cwiseProduct(standard_normal(
                                                                    q, 1, static_cast<std::uint64_t>(i)))),
             first_steps);
+  for (int i = 0; i < most_draws && best->left_share > usual_left; ++i) {
+    const double spread = i % 2 == 0 ? 1.0 : 0.3;  // of deviations known beforehand
+    const VectorXd& from = i % 4 < 2 ? middle : problem.prior.mean;
+    const VectorXd draw = standard_normal(q, 1, static_cast<std::uint64_t>(draws + i));
+    descend(search, well_damped(*problem.model, from + spread * known.cwiseProduct(draw)), 20);
+  }
   for (int i = 0; i < 2; ++i) {
     problem.weights = best->left.cwiseMax(least_left * size).cwiseInverse();
     const VectorXd start = best->theta;

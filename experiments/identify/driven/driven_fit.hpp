@@ -121,8 +121,9 @@ DrivenFit fit_driven_from(const DrivenProblem& problem, const Eigen::VectorXd& s
 
 /// The same from several starts: every stiffness times a common factor of 1/4 to 4, modes well damped so that
 /// their resonances are wide, and draws about the best. The weights become those of what is left.
+/// @param most_draws more, about the best and the prior's mean, as long as 30 % of the lines' size are left
 /// @returns absent where no start has a motion
-std::optional<DrivenFit> fit_driven(DrivenProblem& problem);
+std::optional<DrivenFit> fit_driven(DrivenProblem& problem, int most_draws = 0);
 
 /// J^T J and J^T r of every part at a theta; no search.
 DrivenFit evaluate_driven(const DrivenProblem& problem, const Eigen::VectorXd& theta);

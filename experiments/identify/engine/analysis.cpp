@@ -99,7 +99,7 @@ void refuse_dead_channels(const Record& record) {
 }
 
 double beam_frequency_hz(const Experiment& experiment) {
-  return fem::modes(fem::assemble(experiment.structure, experiment.elements), 1).frequency_hz()[0];
+  return fem::lowest_frequency_hz(fem::assemble(experiment.structure, experiment.elements));
 }
 
 enum class Depth { mode, everything };

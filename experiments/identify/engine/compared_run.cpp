@@ -230,8 +230,7 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
                 run.misfit_percent, too_much});
     return;
   }
-  run.status = ComparedRun::Status::contradicted;
-  run.reason =
+  std::string reason =
       fmt::format("{}: the residual is {:.3g} % of it, and is no noise. {}",
                   forced ? "the measured input does not make the record's motion of this model"
                          : "no start of this model makes the record's motion",
@@ -242,8 +241,8 @@ void judge_motion_left(const RunContext& context, ComparedRun& run) {
                                     "or the damping may not be as described, or the {} on a wrong answer",
                                     forced ? "filter has settled" : "search has ended")
                       : run.step_cause);
-  if (run.reason.ends_with('.')) run.reason.pop_back();
-  run.object({"unexplained", "CONTRADICTED: " + run.reason + ".", run.misfit_percent, too_much});
+  if (reason.ends_with('.')) reason.pop_back();
+  run.contradict(reason, {"unexplained", "CONTRADICTED: " + reason + ".", run.misfit_percent, too_much});
 }
 
 bool judge_faults(ComparedRun& run) {
@@ -269,49 +268,51 @@ bool judge_faults(ComparedRun& run) {
       is_material = is_material || std::isinf(fault.score) || move.is_material;
     }
   constexpr double slight = 3.0;  // % of the motion
-  const auto mention = [&](const std::string& what, double explained) {
+  const auto mention = [&](const std::string& what, double statistic, double limit) {
     run.objections.emplace_back("description",
                                 "One thing described otherwise explains the residual: " + what +
                                     ". Allowed for, it moves no estimate out of its interval.",
-                                explained, mostly);
+                                statistic, limit);
   };
   if (count > 0 && (moves ? !is_material && has_small_residual(run) : run.misfit_percent < slight)) {
     if (moves) hold_moved(run, moved_by(run.description.faults.front()));
-    mention(named, run.description.faults.front().explained);
+    mention(named, run.description.faults.front().explained, mostly);
     return true;
   }
   std::string held;
-  double held_share = 0.0;
+  double held_score = 0.0,
+         statistic = run.description.faults.empty() ? 0.0 : run.description.faults.front().explained,
+         limit = mostly;
   if (count == 0 && run.status == ComparedRun::Status::converged)
     for (const DescriptionFault& fault : run.description.faults) {
       const Move move = farthest_move(run, moved_by(fault));
       if (!(fault.score > surely) || !(move.deviations > quantile_95)) continue;
       if (!(fault.explained > least) || (!move.is_material && has_small_residual(run))) {
         hold_moved(run, moved_by(fault));
-        if (held.empty()) held = share(fault), held_share = fault.explained;
+        if (held.empty()) held = share(fault), held_score = fault.score;
         continue;
       }
       named = fmt::format("{}; allowed for, it moves {} by {:.2g} of its standard deviations", share(fault),
                           run.parameters[move.unknown].estimate.name, move.deviations);
+      statistic = fault.score, limit = surely;
       break;
     }
   constexpr double highly_significant = 10.0, good_part = 0.1;  // deviations; of the residual, in squares
   if (named.empty() && !held.empty()) {
-    mention(held + ". Intervals are widened to hold the estimates with it", held_share);
+    mention(held + ". Intervals are widened to hold the estimates with it", held_score, surely);
     return false;
   }
   if (named.empty()) {
     if (run.status == ComparedRun::Status::converged && !run.description.faults.empty())
       if (const DescriptionFault& best = run.description.faults.front();
           best.score > highly_significant && best.explained > good_part)
-        mention(share(best), best.explained);
+        mention(share(best), best.score, highly_significant);
     return false;
   }
-  run.object({"description",
-              "CONTRADICTED: one thing described otherwise explains the record better: " + named + ".",
-              run.description.faults.front().explained, mostly});
-  run.status = ComparedRun::Status::contradicted;
-  run.reason = named;
+  run.contradict(named,
+                 {"description",
+                  "CONTRADICTED: one thing described otherwise explains the record better: " + named + ".",
+                  statistic, limit});
   return true;
 }
 

@@ -375,6 +375,10 @@ ComparedRecord with_channels(ComparedRecord compared, const std::vector<bool>& k
     }
     output += measured;
   }
+  std::erase_if(compared.record.own_clock, [&](const std::string& name) {
+    return std::ranges::find(compared.record.channels, name, &Channel::name) ==
+           compared.record.channels.end();
+  });
   compared.record.samples = compared.record.samples(rows, Eigen::all).eval();
   if (compared.sensor_noise.size() > 0) compared.sensor_noise = compared.sensor_noise(rows).eval();
   if (compared.quiet_noise.size() > 0) compared.quiet_noise = compared.quiet_noise(outputs).eval();

@@ -156,6 +156,13 @@ struct ComparedRun {
   /// The worst first: before those that are there.
   void object(Objection worse) { objections.insert(objections.begin(), std::move(worse)); }
 
+  /// No single estimate is to be relied on, for this reason.
+  void contradict(const std::string& why, Objection worst) {
+    status = Status::contradicted;
+    reason = why;
+    object(std::move(worst));
+  }
+
   /// Whether the estimates and their intervals may be relied on.
   bool answers() const { return status == Status::converged || status == Status::approximate; }
   bool has_estimate() const {

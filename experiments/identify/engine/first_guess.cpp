@@ -94,7 +94,8 @@ std::optional<FirstGuess> guess_by_lines(const JointModel& model, const filters:
   if (model.motion_size() == 1) return {};  // whose own beginning leads as far
   auto problem = driven_problem(model, record, {own.mean(model.unknown_places), own.unknowns, {}});
   if (!problem) return {};
-  const auto fit = fit_driven(*problem);
+  constexpr int most_draws = 32;  // of 0.1 % of damping, a resonance is a line or two of hundreds
+  const auto fit = fit_driven(*problem, most_draws);
   if (!fit || fit->left_share > lost) return {};
   FirstGuess found = own;
   found.mean(model.unknown_places) = fit->theta;

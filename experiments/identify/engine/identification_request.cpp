@@ -99,12 +99,17 @@ std::string reason_of(const std::vector<Break>& breaks) {
   return text;
 }
 
+/// Of the mode that is described, as the record shows it: above half its sampling rate an alias [s].
+double period_shown(const Experiment& experiment, const Record& record) {
+  return 1.0 / shown_at(described_frequency_hz(experiment, record), 1.0 / record.interval());
+}
+
 }  // namespace
 
 std::optional<SoundPart> sound_part(const Experiment& experiment, const Record& whole,
                                     const std::vector<RecordDefect>& defects) {
   const Record record = analysable(whole).record;
-  const double period = 1 / described_frequency_hz(experiment, record);
+  const double period = period_shown(experiment, record);
   std::vector<Break> breaks = clipped_stretches(defects, period);
   const auto reaches = [&](const Break& one) {
     return one.to - period >= record.time[0] && one.from + period <= record.time[record.size() - 1];
@@ -224,11 +229,11 @@ std::optional<DecayEvent> last_event(const Eigen::VectorXd& signal, double inter
 /// The mode in the beginning of the record behind an instant; nothing where none is near the expected one:
 /// what the identification says of it is clearer.
 std::optional<ModalEstimate> mode_behind(const Record& record, double from, double period) {
-  const Record beginning =
-      record.window(from, std::min(record.time[record.size() - 1], from + trial * period));
   ModalAnalysisSettings expected;
   expected.expected_frequency_hz = 1 / period;
   try {
+    const Record beginning =
+        record.window(from, std::min(record.time[record.size() - 1], from + trial * period));
     return dominant_mode(beginning.samples.row(0).transpose(), record.interval(), expected);
   } catch (const std::exception&) {
     return {};
@@ -251,7 +256,7 @@ std::string DecayWindow::words() const {
 std::optional<DecayWindow> decay_window(const Experiment& experiment, const Record& whole) {
   const Record record = analysable(whole).record;
   const double last = record.time[record.size() - 1];
-  const double period = 1 / described_frequency_hz(experiment, record);
+  const double period = period_shown(experiment, record);
   auto happened = last_event(record.samples.row(0).transpose(), record.interval(), period);
   const bool begins_behind_gap = record.time[0] > whole.time[0] + record.interval();
   if (!happened && begins_behind_gap) happened = DecayEvent{0.0, DecayWindow::Behind::gap};

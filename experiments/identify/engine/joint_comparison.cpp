@@ -197,7 +197,7 @@ JointComparison joint_comparison(std::vector<Comparison> records) {
   const ComparedRun* kept = nullptr;
   for (const Comparison& record : joint.records) {
     const ComparedRun& run = record.runs.at(0);
-    if (!run.has_estimate()) continue;
+    if (!run.answers()) continue;
     if (!kept) kept = &run;
     if (!same(run.unknowns, kept->unknowns))
       throw std::invalid_argument(

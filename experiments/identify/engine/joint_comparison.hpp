@@ -92,7 +92,7 @@ RecordEstimate record_estimate(const ComparedRun& run);
 /// What all records say together. Each was identified by itself, in one way: own start, noise and window.
 struct JointComparison {
   std::vector<Comparison> records;  ///< of one run each
-  JointEstimate estimate;  ///< of what the filter's state carries, by the runs that converged; empty: none
+  JointEstimate estimate;  ///< of what the filter's state carries, by the runs that answer; empty: none
   std::vector<Estimate> parameters;  ///< at it (q)
 
   bool none_converged() const { return parameters.empty(); }

@@ -158,11 +158,12 @@ LikeliestNoise likeliest_noise(const Experiment& experiment, const Record& recor
   const std::vector<Index> channels = output_channels(record);
   std::map<Quantity, std::vector<Index>> groups;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    const Quantity quantity = record.channels[static_cast<std::size_t>(channels[i])].quantity;
-    if (!experiment.noise.contains(quantity)) groups[quantity].push_back(static_cast<Index>(i));
+    const Channel& channel = record.channels[static_cast<std::size_t>(channels[i])];
+    if (!experiment.noise.contains(channel.quantity) && !(channel.noise > 0.0))
+      groups[channel.quantity].push_back(static_cast<Index>(i));
   }
   if (groups.empty())
-    throw std::invalid_argument("noise.method is likelihood, but [noise] states the noise of every channel");
+    throw std::invalid_argument("noise.method is likelihood, but the noise of every channel is stated");
   const Index states = settings.initial.mean.size();
   filters::NoiseSettings search;
   search.guess = {Eigen::MatrixXd::Zero(states, states), settings.output_noise};

@@ -82,13 +82,16 @@ double Passes::distance_from_all_samples() const {
 
 // Its innovations and histories are those of the estimates then, unless it loses its way once more.
 void Passes::filter_from_there() {
-  filters::FilterRun before = std::move(run_.run);
+  filters::FilterRun histories = std::move(run_.run);
+  ComparedRun before = run_;
   bool whole = false;
   try {
     whole = filter_once();
   } catch (const std::runtime_error&) {  // no motion at its end
   }
-  if (!whole) run_.run = std::move(before);
+  if (whole) return;
+  run_ = std::move(before);
+  run_.run = std::move(histories);
 }
 
 bool Passes::is_linear_and_driven() const {

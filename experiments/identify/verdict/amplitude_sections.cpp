@@ -127,9 +127,9 @@ AmplitudeLaw fit_amplitude_law(const VectorXd& signal, double interval, const Am
   const Normal covariance =
       at.squares / law.freedom * Normal(filters::solve_damped(at.normal, 0, Normal::Identity()));
   law.frequency_hz = law_line(p[0], p[2], covariance(2, 2), covariance(0, 2), twice_pi);
-  const double omega = twice_pi * law.frequency_hz.value;
+  const double omega_d = twice_pi * law.frequency_hz.value, omega = std::hypot(omega_d, p[1]);
+  law.frequency_hz.value *= omega / omega_d;  // |s| of its imaginary part
   law.damping_ratio = law_line(p[1], p[3], covariance(3, 3), covariance(1, 3), omega);
-  law.frequency_hz.value *= std::hypot(1.0, law.damping_ratio.value);  // |s| of its imaginary part
   law.shape = shape_at(instants, interval, shape, p, log_amplitude);
   if (!law.shape.allFinite() || !(law.frequency_hz.slope_deviation > 0) ||
       !(law.damping_ratio.slope_deviation > 0))

@@ -239,23 +239,24 @@ void judge_free_modes(ComparedRun& run) {
   const double widened = free.widening();
   for (std::size_t j = 0; j < run.parameters.size(); ++j) widen(run, j, widened);
   const bool contradicts = free.share > much;
-  const std::string found = fmt::format(
+  const std::string reason = fmt::format(
       "no parameters of this model make the modes of the record: modes with poles and shapes of their own "
       "have a "
       "residual of {:.2g} %, and explain {:.2g} % of the motion that the model does not{}{}",
       100.0 * free.left, 100.0 * free.share, free.difference.empty() ? "" : "; ", free.difference);
-  run.object(
-      {"free_modes",
-       (contradicts ? "CONTRADICTED: " : "APPROXIMATE: ") + found +
-           ". A length, a mass, a support, a place, a gain or the damping of a mode is not as described." +
-           (widened > 1.0
-                ? fmt::format(" Intervals are widened by {:.3g}, as if all of it were one parameter's{}.",
-                              widened, contradicts ? ", and may not hold the truth" : "")
-                : ""),
-       free.share, much});
-  if (!contradicts) return;
-  run.status = ComparedRun::Status::contradicted;
-  run.reason = found;
+  const Objection objection{
+      "free_modes",
+      (contradicts ? "CONTRADICTED: " : "APPROXIMATE: ") + reason +
+          ". A length, a mass, a support, a place, a gain or the damping of a mode is not as described." +
+          (widened > 1.0
+               ? fmt::format(" Intervals are widened by {:.3g}, as if all of it were one parameter's{}.",
+                             widened, contradicts ? ", and may not hold the truth" : "")
+               : ""),
+      free.share, much};
+  if (contradicts)
+    run.contradict(reason, objection);
+  else
+    run.object(objection);
 }
 
 }  // namespace beamid::experiments

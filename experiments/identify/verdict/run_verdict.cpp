@@ -159,13 +159,15 @@ void judge_settling(ComparedRun& run) {
   if (!(run.last_move > many)) return;
   const std::string moved =
       fmt::format("the last pass moved an unknown by {:.2g} standard deviations", run.last_move);
-  run.status = ComparedRun::Status::contradicted;
-  run.reason = "the passes have not settled: " + moved;
-  run.object({"not_settled",
-              "NOT SETTLED: " + moved +
-                  ". The estimates are not to be relied on; expected more passes "
-                  "([compare] passes) or nearer initial estimates.",
-              run.last_move, many});
+  const Objection objection{"not_settled",
+                            "NOT SETTLED: " + moved +
+                                ". The estimates are not to be relied on; expected more passes "
+                                "([compare] passes) or nearer initial estimates.",
+                            run.last_move, many};
+  if (run.answers())
+    run.contradict("the passes have not settled: " + moved, objection);
+  else
+    run.object(objection);
 }
 
 void judge_decay(const RunContext& context, ComparedRun& run) {
@@ -209,14 +211,13 @@ void judge_certainty(ComparedRun& run) {
   if (names.empty()) return;
   const std::string reason = "the standard deviation of " + names +
                              " is less than half of what the record allows (Cramer-Rao bound)";
-  run.status = ComparedRun::Status::contradicted;
-  run.reason = reason;
-  run.object({"overconfident",
-              "CONTRADICTED: " + reason +
-                  ". The filter is overconfident: the true value may lie far outside the interval. Expected "
-                  "nearer initial estimates, more passes ([compare] passes), a reduction in place of the "
-                  "mesh, or `identify` in place of `compare`, which uses all samples at once.",
-              least, far_surer});
+  run.contradict(
+      reason, {"overconfident",
+               "CONTRADICTED: " + reason +
+                   ". The filter is overconfident: the true value may lie far outside the interval. Expected "
+                   "nearer initial estimates, more passes ([compare] passes), a reduction in place of the "
+                   "mesh, or `identify` in place of `compare`, which uses all samples at once.",
+               least, far_surer});
 }
 
 // Of the general model: its lowest mode beside the modal analysis, its innovations.
@@ -225,9 +226,9 @@ void judge_model(const RunContext& context, ComparedRun& run) {
   if (const std::string text = reduction_error(context, run); !text.empty())
     run.object({"reduction_bias", text});
   if (const std::string text = step_error(context, run); !text.empty()) run.object({"step_bias", text});
-  judge_settling(run);
   judge_certainty(run);
   judge_motion_left(context, run);  // what the model lacks goes before: it explains the certainty
+  judge_settling(run);
   hold_scatter_of_lines(run);
   if (!judge_faults(run)) judge_inputs(context, run);
   judge_decay(context, run);

@@ -193,7 +193,8 @@ class BayesMethod final : public ModalMethod {
       found.orders.back().poles.push_back(pole);
       if (!lines.empty())
         found.objections.emplace_back(
-            "few_lines", lines_sentence(mode, within(all, mode.band_hz).frequency_hz.size(), lines, step));
+            "excluded_lines",
+            lines_sentence(mode, within(all, mode.band_hz).frequency_hz.size(), lines, step));
     } catch (const std::invalid_argument& error) {
       found.refused.push_back({pole, error.what()});
     }

@@ -191,6 +191,43 @@ void add_rest_of_seconds(RecordTable& table) {
       fmt::format("Column {} holds the rest of the seconds in column {}.", next + 1, next));
 }
 
+/// At most so many characters, without a line that would be cut.
+std::size_t as_whole_lines(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return text.size();
+  const std::size_t end = text.find_last_of("\r\n", most);
+  return end == text.npos ? 0 : end;
+}
+
+/// Dates and times of one column as seconds.
+class StampColumn {
+ public:
+  /// @param before what the rows above come to. Dates are 0 [s], to which a column of times of day is added;
+  /// past midnight these go on. Instants count from the whole second of the first, as a double holds the rest
+  /// finely then.
+  double seconds_of(const Stamp& stamp, const std::vector<double>& before) {
+    constexpr double half_a_day = 43200.0;
+    if (stamp.kind == Stamp::Kind::date) {
+      day_ = before.empty() || stamp.seconds > day_ ? stamp.seconds : std::nan("");
+      return 0.0;
+    }
+    if (stamp.kind == Stamp::Kind::date_and_time) {
+      if (!first_) first_ = std::floor(stamp.seconds);
+      return stamp.seconds - *first_;
+    }
+    const double value = stamp.seconds + days_;
+    if (before.empty() || !(value < before.back() - half_a_day)) return value;
+    days_ += 2.0 * half_a_day;
+    return value + 2.0 * half_a_day;
+  }
+
+  bool holds_dates() const { return std::isfinite(day_); }  ///< each later than the one before
+
+ private:
+  std::optional<double> first_;  ///< [s]
+  double days_ = 0.0;            ///< that have passed [s]
+  double day_ = std::nan("");    ///< the last date [s]
+};
+
 }  // namespace
 
 RecordTable table_of_text(const std::string& file, std::string as_read, const RecordFormat& format) {
@@ -208,58 +245,42 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
   table.header_line = text.header_line();
   table.columns.resize(text.width());
   table.precision.resize(text.width());
+  for (std::vector<double>& column : table.columns)
+    column.reserve(static_cast<std::size_t>(std::ranges::count(*content, '\n')) + 1);
   TextCells cells(table.file, content);
-  std::string token;
-  std::vector<std::optional<double>> first_stamp(
-      text.width());  // whole seconds: a double holds the rest finely
-  constexpr double half_a_day = 43200.0;
-  std::vector<double> days(text.width(), 0.0);          // that have passed [s]
-  std::vector<double> day(text.width(), std::nan(""));  // of dates, each later than the one before [s]
-  std::size_t above = 0;                                // characters before the first row
+  std::vector<StampColumn> stamps(text.width());
+  std::size_t above = 0;  // characters before the first row
   while (text.next()) {
     if (table.lines.empty()) above = static_cast<std::size_t>(text.line().data() - content->data());
     cells.add(text.line(), text.line_number());
-    table.lines.push_back(text.line_number());
     for (std::size_t column = 0; column < text.width(); ++column) {
-      table.columns[column].push_back(text.value(column));
-      token = text.field(column);
-      if (!std::isfinite(table.columns[column].back())) {
-        const std::string field = unquoted(token);
-        double& value = table.columns[column].back();
-        if (const auto stamp = parse_stamp(field)) {
-          if (stamp->kind == Stamp::Kind::date) {
-            value = 0.0;
-            day[column] =
-                table.lines.size() == 1 || stamp->seconds > day[column] ? stamp->seconds : std::nan("");
-          } else if (stamp->kind == Stamp::Kind::time_of_day) {  // past midnight the days go on
-            value = stamp->seconds + days[column];
-            const std::size_t rows = table.columns[column].size();
-            if (rows > 1 && value < table.columns[column][rows - 2] - half_a_day)
-              value += 2.0 * half_a_day, days[column] += 2.0 * half_a_day;
-          } else {
-            if (!first_stamp[column]) first_stamp[column] = std::floor(stamp->seconds);
-            value = stamp->seconds - *first_stamp[column];
-          }
-          if (!table.time && table.lines.size() == 1 && stamp->kind != Stamp::Kind::date) table.time = column;
-          token = printed_like(*stamp);
-          if (stamp->kind != Stamp::Kind::date) table.precision[column].add(token);
-          continue;
-        }
+      std::string token(text.field(column));
+      double value = text.value(column);
+      const auto stamp = std::isfinite(value) ? std::nullopt : parse_stamp(unquoted(token));
+      if (stamp) {
+        value = stamps[column].seconds_of(*stamp, table.columns[column]);
+        token = printed_like(*stamp);
+        if (!table.time && table.lines.empty() && stamp->kind != Stamp::Kind::date) table.time = column;
+      } else if (text.decimal() == ',') {
+        std::ranges::replace(token, ',', '.');
       }
-      if (text.decimal() == ',')
-        for (char& sign : token) sign = sign == ',' ? '.' : sign;
-      if (std::isfinite(table.columns[column].back())) table.precision[column].add(token);
+      if (std::isfinite(value) && !(stamp && stamp->kind == Stamp::Kind::date))
+        table.precision[column].add(token);
+      table.columns[column].push_back(value);
     }
+    table.lines.add(text.line_number());
+    text.take_plain_rows(table, cells);
   }
   for (std::size_t column = 0; !table.time && column < text.width(); ++column)
-    if (std::isfinite(day[column]) && table.rows() > 1 && !format.sampling_rate)
-      throw InputError({table.file, table.lines.front(), 0},
+    if (stamps[column].holds_dates() && table.rows() > 1 && !format.sampling_rate)
+      throw InputError({table.file, table.lines[0], 0},
                        fmt::format("column {} holds dates without times of day; expected times, or the "
                                    "sampling rate: --rate HZ",
                                    column + 1));
   table.cell = cells.cells(text.separator());
   const std::string_view head = std::string_view(beginning).substr(0, above);
-  table.stated_rate = stated_rate(beginning.substr(0, looked_at_for_a_rate), text.decimal());
+  const std::size_t cut = as_whole_lines(beginning, looked_at_for_a_rate);
+  table.stated_rate = stated_rate(beginning.substr(0, cut), text.decimal());
   take_stated_unit(table, head, !format.channels.empty());
   table.skipped_lines = text.skipped_lines();
   take_start_and_rate(table);

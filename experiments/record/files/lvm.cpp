@@ -86,9 +86,7 @@ bool LvmLines::next() {
 
 bool LvmLines::next_line() {
   if (rest_.empty()) return false;
-  const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-  line_ = rest_.substr(0, end);
-  rest_.remove_prefix(std::min(rest_.size(), end + (rest_.substr(end).starts_with("\r\n") ? 2 : 1)));
+  line_ = take_line(rest_);
   ++number_;
   return true;
 }
@@ -333,7 +331,7 @@ class LvmFile {
       if (std::isfinite(values_[k + 1].back())) add_precision(k + 1, lines_.fields()[y_[k]]);
     }
     cells_.add(lines_.line(), lines_.number());
-    table_.lines.push_back(lines_.number());
+    table_.lines.add(lines_.number());
   }
 
   void add_precision(std::size_t column, string_view token) {
@@ -356,7 +354,7 @@ class LvmFile {
     if (has_x_) {
       const std::string unit = segment_.x_unit();
       add_time(unit.empty() && segment_.over_time() ? "s" : unit, std::move(values_[0]), precision_[0]);
-      fields.push_back(x_[0]);
+      fields.push_back(x_.empty() ? 0 : x_[0]);
       if (x_seconds() == 1.0) table_.time = 0;
     } else if (instants_.times().size() == table_.lines.size()) {
       table_.clock = instants_.clock();

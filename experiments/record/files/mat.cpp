@@ -232,10 +232,11 @@ void collect_matrices(CollectedSignals& signals, const std::string& wanted) {
       add_sparse(*found, rows, columns, values);
     else
       add_full(*found, rows, columns, values);
-    signals.add(own, "", {static_cast<double>(found->dims[0]), static_cast<double>(found->dims[1])}, 15);
-    signals.add("rows", "", std::move(rows), 15);
-    signals.add("columns", "", std::move(columns), 15);
-    signals.add("values", "", std::move(values), 15);
+    signals.add_numbers(own, "", {static_cast<double>(found->dims[0]), static_cast<double>(found->dims[1])},
+                        15);
+    signals.add_numbers("rows", "", std::move(rows), 15);
+    signals.add_numbers("columns", "", std::move(columns), 15);
+    signals.add_numbers("values", "", std::move(values), 15);
   }
 }
 

@@ -344,11 +344,12 @@ class SpreadsheetReader final : public RecordReader {
       throw InputError(cell_place(place, text),
                        std::string(error.what()).substr(to_string(place).size() + 2));
     }
-    table.cell = [cell = table.cell](std::size_t row, std::size_t column) {
-      TextField field = cell(row, column);
-      field.place.column = column + 1;
-      return field;
-    };
+    if (table.cell)
+      table.cell = [cell = table.cell](std::size_t row, std::size_t column) {
+        TextField field = cell(row, column);
+        field.place.column = column + 1;
+        return field;
+      };
     if (kind->open != xls.open && table.names.empty())
       throw InputError({file.string(), 0, 0},
                        fmt::format("{} without names above its numbers that libfreexl reads; expected a row "

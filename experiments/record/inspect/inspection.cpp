@@ -82,8 +82,8 @@ bool is_named_time(std::string name) {
 
 /// The line of [record] that names the column of time.
 std::string time_key(const RecordColumn& column) {
-  const std::string unit = column.factor == 1 ? "s" : column.factor == 1e-3 ? "ms" : "us";
-  return fmt::format("time = {{ column = {}, unit = \"{}\" }}", column.index + 1, unit);
+  return fmt::format("time = {{ column = {}, unit = \"{}\" }}", column.index + 1,
+                     symbol_of_time(column.factor));
 }
 
 /// The column of time, what is said of it, and what would state it.

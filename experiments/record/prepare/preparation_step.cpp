@@ -147,10 +147,14 @@ std::string apply(const PreparationStep& step, Record& record,
   AnalysableRecord ready = analysable(record, within);
   record = std::move(ready.record);
   const std::string text = step.apply(record);
-  const bool same_rows = record.samples.rows() == before.samples.rows();
+  // What a step adds behind the channels that it keeps may come from any of them.
+  const Index rows = before.samples.rows();
+  bool keeps = record.samples.rows() >= rows;
+  for (std::size_t i = 0; i < before.channels.size() && keeps; ++i)
+    keeps = record.samples.rows() == rows || record.channels[i].name == before.channels[i].name;
   for (Index row = 0; row < record.samples.rows(); ++row)
-    for (Index from = same_rows ? row : 0; from < (same_rows ? row + 1 : before.samples.rows()); ++from)
-      leave_out_gaps(before, from, record, row);
+    for (Index from = 0; from < rows; ++from)
+      if (!keeps || row >= rows || from == row) leave_out_gaps(before, from, record, row);
   return ready.remark.empty() ? text : ready.remark + " " + text;
 }
 

@@ -12,17 +12,11 @@
 #include "experiments/record/record_columns.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/record/units.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
 namespace {
-
-std::string toml_string(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char letter : text)
-    quoted += (letter == '"' || letter == '\\' ? "\\" : "") + std::string(1, letter);
-  return quoted + "\"";
-}
 
 std::optional<std::string> symbol_of(double factor, const std::vector<Unit>& known) {
   for (const Unit& unit : known)
