@@ -49,7 +49,8 @@ int run_backbone(const Values& values) {
     if (request.format.channels.empty()) put_strongest_first(prepared.record);
     try {
       prepared.record = complete_part(motion_of(prepared.record), prepared.record.remarks);
-      if (!request.format.window) prepared.record = from_release(prepared.record, prepared.record.remarks);
+      if (!request.format.window)
+        prepared.record = from_release(prepared.record, prepared.record, prepared.record.remarks);
     } catch (const std::invalid_argument& error) {
       throw InputError({request.file.string()}, error.what());
     }

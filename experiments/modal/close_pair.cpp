@@ -66,8 +66,10 @@ VectorXcd drifting(const VectorXcd& c, const MatrixXd& basis) {
 /// c of least squares through log z, weighted by |z|.
 VectorXcd through_logarithm(const VectorXcd& z, const MatrixXd& basis) {
   const VectorXd weight = z.cwiseAbs();
-  return complex_least_squares(weight.asDiagonal() * basis.cast<Complex>(),
-                               weight.asDiagonal() * unwrapped_logarithm(z));
+  VectorXcd logarithm = unwrapped_logarithm(z);
+  for (Index k = 0; k < z.size(); ++k)
+    if (!std::isfinite(logarithm[k].real())) logarithm[k] = 0.0;  // where nothing is left, of no weight
+  return complex_least_squares(weight.asDiagonal() * basis.cast<Complex>(), weight.asDiagonal() * logarithm);
 }
 
 /// One mode that drifts alike in all channels: Re(A_i wave), wave = e^(c_1 x_1 + ...), every power x from 0

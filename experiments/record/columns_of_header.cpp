@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <tuple>
 #include <utility>
 
+#include "experiments/record/inspect/defects.hpp"
 #include "experiments/record/record_columns.hpp"
 #include "experiments/record/stamps.hpp"
 #include "experiments/record/units.hpp"
@@ -25,6 +27,7 @@ bool holds_words(const RecordTable& table, std::size_t index) {
     if (std::isfinite(values[row])) continue;
     const std::string text = table.cell(row, index).text;
     const std::size_t first = text.find_first_not_of("\"'+-.,");
+    if (text.find(" / ") != text.npos) continue;  // "6 / 12": so many of so many
     if (first != text.npos && text[first] >= '0' && text[first] <= '9') throw table.fault(row, index);
   }
   return true;
@@ -107,11 +110,20 @@ std::optional<std::size_t> rising_time(const RecordTable& table) {
   return {};
 }
 
+// "x", "N", "up": of columns whose quantity others state.
+bool is_direction(const std::string& name) {
+  static const std::regex form(
+      "[a-oq-z][0-9]*|ns|ew|ud|up|north|south|east|west|vert.*|.*(tip|top|mid|base|floor).*|(ch|kanal|sensor)"
+      ".*");
+  return std::regex_match(folded(name), form);
+}
+
 // Of columns whose names are not this project's own, what was recognised.
 class Recognition {
  public:
   // @param stamped whether times are stated elsewhere
-  Recognition(RecordTable& table, bool stamped) : rising_(rising_time(table)), stamped_(stamped) {
+  Recognition(RecordTable& table, bool stamped)
+      : rising_(rising_time(table)), stamped_(stamped), states_motion_(names_motion(table)) {
     if (!table.time || !rising_ || table.time == rising_ || rises(table.columns[*table.time])) return;
     if (holds_stamps(table, *rising_))
       table.time = rising_;
@@ -124,7 +136,9 @@ class Recognition {
     const std::string& name = table.names[index];
     auto found = recognised(table, index);
     if (!found) return false;
-    const auto letters = [](std::string text) {  // "g_x" as "gx"
+    const auto letters = [](const std::string& written) {  // "g_x", "GX" and "gx_raw" as "gx"
+      std::string text = folded(written);
+      if (text.ends_with("raw")) text.resize(text.size() - 3);
       std::erase(text, '_');
       return text;
     };
@@ -143,7 +157,7 @@ class Recognition {
           return other.ends_with("(txt)");  // kinds of values: text, numbers
         }))
       found->kind = RecognisedColumn::Kind::other;
-    if ((name == "U" || name == "u") && named("N") && named("E"))  // up
+    if ((name == "U" || name == "u") && named("n") && named("e"))  // up
       found->quantity = Quantity::acceleration, found->states_quantity = false;
     const auto add = [&](std::string& list) {
       list += (list.empty() ? "" : ", ") +
@@ -177,7 +191,10 @@ class Recognition {
     }
     switch (found->kind) {
       case RecognisedColumn::Kind::count:
-        if (!counted_) counted_ = index;
+        if (!rises(values) && !is_dead(values))
+          swinging_ = index;
+        else if (!counted_)
+          counted_ = index;
         break;
       case RecognisedColumn::Kind::frequency:
         if (index == 0 && rises(values) && !stamped_)
@@ -191,7 +208,7 @@ class Recognition {
         break;
       case RecognisedColumn::Kind::time:
         if (columns.time || table.time || (rising_ && index != rising_)) {
-          require_one_clock(table, columns, index, *found);
+          clocks_.emplace_back(index, *found);
           add(other_);
         } else if (!found->states_unit && counts_samples(table.columns[index])) {
           counted_ = index;
@@ -202,6 +219,11 @@ class Recognition {
         }
         break;
       case RecognisedColumn::Kind::signal: {
+        if (states_motion_ && !found->states_quantity && !found->states_unit && found->reading.empty() &&
+            !is_direction(name) && std::isfinite(values.front())) {
+          add(other_);
+          break;
+        }
         if (const auto& unit = table.stated_unit;
             unit && !found->states_unit && (!found->states_quantity || found->quantity == unit->first))
           std::tie(found->quantity, found->factor) = certain_unit(table), found->states_unit = true;
@@ -241,7 +263,14 @@ class Recognition {
       while (std::isfinite(table.columns[*first_words_][row])) ++row;
       throw table.fault(row, *first_words_);
     }
+    if (columns.channels.empty() && swinging_) {  // "Sample", of GeoCSV: the reading, not its number
+      columns.channels.push_back({*swinging_, 1.0, {Quantity::acceleration, table.names[*swinging_]}});
+      columns.recognised = true;
+      read_ = fmt::format("'{}' as acceleration, its unit taken for m/s2", table.names[*swinging_]);
+    }
     if (unnamed_ && !columns.time && !table.time && !stamped_) take_stamps(table, *unnamed_, {}, columns);
+    for (const auto& [index, found] : clocks_)
+      if (columns.time && !stamped_) require_one_clock(table, *columns.time, unit_is_sure_, index, found);
     const std::string stamps =
         table.time && table.by_people && !column_name_of(table, *table.time).empty()
             ? "'" + column_name_of(table, *table.time) +
@@ -256,8 +285,9 @@ class Recognition {
 
  private:
   std::string read_, other_, words_, reading_;  // reading_: unit of the first sensor's output
-  std::optional<std::size_t> rising_, counted_, unnamed_, first_words_;
-  bool stamped_, unit_is_sure_ = false;
+  std::optional<std::size_t> rising_, counted_, unnamed_, first_words_, swinging_;
+  std::vector<std::pair<std::size_t, RecognisedColumn>> clocks_;  // beside the one that is taken
+  bool stamped_, states_motion_, unit_is_sure_ = false;
 
   // @param factor to seconds, where the file states it
   void take_stamps(const RecordTable& table, std::size_t index, std::optional<double> factor,
@@ -281,28 +311,6 @@ class Recognition {
     read_ += fmt::format("{}{} as time in {}", read_.empty() ? "" : ", ",
                          name.empty() ? fmt::format("column {}", index + 1) : "'" + name + "'",
                          symbol_of_time(*factor));
-  }
-
-  // Two columns of times, each for the channels beside it.
-  // @throws InputError where they run at different rates, whatever their units
-  void require_one_clock(const RecordTable& table, const RecordColumns& columns, std::size_t index,
-                         const RecognisedColumn& other) const {
-    constexpr double alike = 0.02;
-    if (!columns.time || stamped_ || (!unit_is_sure_ && other.states_unit)) return;
-    const std::vector<double>&one = table.columns[columns.time->index], &two = table.columns[index];
-    if (!rises(one) || !rises(two)) return;
-    double ratio = mean_step(two) / mean_step(one);
-    if (unit_is_sure_ && other.states_unit)
-      ratio *= other.factor / columns.time->factor;
-    else if (unit_is_sure_ != other.states_unit || std::max(ratio, 1.0 / ratio) > 50.0)
-      return;  // in other units
-    if (std::abs(ratio - 1.0) < alike) return;
-    throw InputError(
-        {table.file, table.header_line, 0},
-        fmt::format("columns {} and {} are times of two clocks, the second at {:.4g} times the rate of the "
-                    "first; expected "
-                    "the channels of one: --time {}:s --column N, or --time {}:s --column N",
-                    columns.time->index + 1, index + 1, 1.0 / ratio, columns.time->index + 1, index + 1));
   }
 
   // A logger's first sample, before its sensor has answered.
@@ -414,7 +422,10 @@ RecordColumns columns_of_header(RecordTable& table, bool stamped) {
            meaning->factor,
            {*meaning->quantity, meaning->label.empty() ? to_string(*meaning->quantity) : meaning->label}});
     else if (columns.time)
-      throw InputError(header, "two columns of time; expected one");
+      throw InputError(header,
+                       fmt::format("columns {0} and {1} are times; expected one of them, and what it is "
+                                   "of: --time {0}:s --column N, or --time {1}:s --column N",
+                                   columns.time->index + 1, index + 1));
     else
       columns.time = RecordColumn{index, meaning->factor, {}};
   }

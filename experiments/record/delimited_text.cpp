@@ -23,6 +23,16 @@ bool holds_reading(const std::vector<std::string_view>& fields) {
   return std::ranges::any_of(fields, is_reading);
 }
 
+bool is_row(const std::vector<std::string_view>& fields, bool with_gaps) {
+  bool read = false;
+  for (const std::string_view field : fields) {
+    const bool reading = is_reading(field);
+    if (!reading && !(with_gaps && says_missing(field))) return false;
+    read = read || reading;
+  }
+  return read;
+}
+
 std::string_view line_near(std::string_view text, double place) {
   const std::size_t from =
       text.find_first_of("\r\n", static_cast<std::size_t>(place * static_cast<double>(text.size())));

@@ -20,6 +20,8 @@ namespace beamid::experiments {
 /// Whether a field is a number with either decimal sign, or a date or time.
 bool is_reading(std::string_view field);
 bool holds_reading(const std::vector<std::string_view>& fields);
+/// Whether all are, or, with gaps, say that nothing was read: one at least is.
+bool is_row(const std::vector<std::string_view>& fields, bool with_gaps);
 
 /// The first line that is not blank behind a place of the text, 0 to 1: where its rows are.
 std::string_view line_near(std::string_view text, double place);

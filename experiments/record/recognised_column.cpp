@@ -93,17 +93,19 @@ const std::set<std::string> no_motion{
     "speed",    "lat",          "lon",      "lng",        "label",  "state",       "gmt",        "rotation",
     "moment",   "torque",       "rssi",     "trigger",    "trig",   "flag",        "flags",      "valid",
     "quality",  "steps",        "heart",    "accuracy",   "tacho",  "crc",         "checksum",   "marker",
-    "event",    "events",       "mic",      "micl"};
+    "event",    "events",       "mic",      "micl",       "exg",    "emg",         "ecg",        "eeg",
+    "eog",      "ppg",          "gsr",      "eda",        "spo2"};
 // Of these not even with a quantity behind them: "angular_velocity".
 const std::set<std::string> no_motion_at_all{"angular",    "orientation", "gyro",     "gyroscope", "euler",
                                              "quaternion", "battery",     "rotation", "wind",      "cpu"};
 const std::set<std::string> readings{"V", "mV", "uV", "LSB", "counts"};  // of a sensor of motion
 // These, and units of what is no motion.
-const std::set<std::string> other_units{"lux", "lx",    "dB",  "dBA", "%",     "°C",  "degC",   "C",   "K",
-                                        "hPa", "Pa",    "V",   "mV",  "uV",    "LSB", "counts", "kPa", "mbar",
-                                        "bar", "rpm",   "RPM", "µT",  "uT",    "T",   "A",      "mA",  "Hz",
-                                        "W",   "km/h",  "°",   "deg", "lumen", "dps", "dBm",    "bpm", "MPa",
-                                        "GPa", "N/mm2", "Nm",  "kNm", "Ohm",   "kV",  "kHz"};
+const std::set<std::string> other_units{
+    "lux", "lx",  "dB",    "dBA",    "%",       "°C",     "degC",  "C",   "K",   "hPa",   "Pa",
+    "V",   "mV",  "uV",    "LSB",    "counts",  "kPa",    "mbar",  "bar", "rpm", "RPM",   "µT",
+    "uT",  "T",   "A",     "mA",     "Hz",      "W",      "km/h",  "°",   "deg", "lumen", "dps",
+    "dBm", "bpm", "MPa",   "GPa",    "N/mm2",   "Nm",     "kNm",   "Ohm", "kV",  "kHz",   "degF",
+    "°F",  "rad", "rad/s", "rad/s2", "rad/s^2", "rad/s²", "deg/s", "°/s"};
 
 std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::string_view name) {
   const bool compass = words.size() == 2 && words[0].size() == 1 && words[1].size() == 1;  // "U-D"
@@ -244,6 +246,15 @@ bool is_other_unit(std::string_view unit) {
 
 namespace {
 
+// Of UDUNITS: a word of a language, unless units that are certain stand beside it.
+std::optional<StatedUnit> unit_elsewhere(const std::string& text) {
+  if (unit_of(text) || other_units.contains(text) || is_volts(text)) return {};
+  for (const Quantity quantity :
+       {Quantity::acceleration, Quantity::velocity, Quantity::displacement, Quantity::force})
+    if (const auto factor = convertible_unit(text, quantity)) return StatedUnit{quantity, *factor};
+  return {};
+}
+
 // "accG", "a_mm_s2", "acc_cms2", "acc_ft_s2": of an acceleration, signs left out or no gap before it.
 std::optional<double> unit_at_the_end(std::string_view name) {
   static const std::regex per_square(R"((?:^|[^A-Za-z])(mm|cm|m|ft|in)_?/?s_?\^?2$)"),
@@ -342,7 +353,8 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
   if (is_volts(stated)) stated = "V";
   static const std::regex range_of_sensor("[0-9]+ ?g");  // "X (100g)"
   if (std::regex_match(stated, range_of_sensor)) stated = "g";
-  const auto known = unit_of(stated);
+  auto known = unit_of(stated);
+  if (!known && !named && !unit.empty()) known = unit_elsewhere(unit);
   if (readings.contains(stated)) found.reading = stated;
   if (!named && !stated.empty() &&
       (stated.find("deg") != std::string::npos || stated.find("rad") != std::string::npos ||
@@ -376,9 +388,10 @@ bool are_units(const std::vector<std::string_view>& fields) {
   for (const std::string_view field : fields) {
     const std::string text = without_brackets(unquoted(field));
     if (text.empty() || text == "-") continue;
-    if (!unit_of(text) && !seconds_per_unit(text) && !other_units.contains(text) && !is_volts(text))
-      return false;
-    any = true;
+    const bool is_certain =
+        unit_of(text) || seconds_per_unit(text) || other_units.contains(text) || is_volts(text);
+    if (!is_certain && !unit_elsewhere(text)) return false;
+    any = any || is_certain;
   }
   return any;
 }

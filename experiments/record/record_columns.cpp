@@ -160,6 +160,51 @@ bool sum_intervals(const RecordTable& table, std::size_t index, std::vector<doub
 
 }  // namespace
 
+namespace {
+
+// Without the cells at its end that hold nothing.
+std::vector<double> to_its_end(const std::vector<double>& values) {
+  std::size_t count = values.size();
+  while (count > 0 && !std::isfinite(values[count - 1])) --count;
+  return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
+}  // namespace
+
+void require_one_clock(const RecordTable& table, const RecordColumn& time, bool is_sure, std::size_t index,
+                       const RecognisedColumn& other) {
+  constexpr double alike = 0.02, in_other_units = 50.0;
+  const std::vector<double> one = to_its_end(table.columns[time.index]),
+                            two = to_its_end(table.columns[index]);
+  if (!rises(one) || !rises(two)) return;
+  const auto refuse = [&](const std::string& how) {
+    throw InputError({table.file, table.header_line, 0},
+                     fmt::format("columns {0} and {1} are times of two clocks, {2}; expected the channels of "
+                                 "one: --time {0}:s --column N, or --time {1}:s --column N",
+                                 time.index + 1, index + 1, how));
+  };
+  const std::size_t longer = std::max(one.size(), two.size()), shorter = std::min(one.size(), two.size());
+  if (longer > shorter + 1 + longer / 1000)
+    refuse(fmt::format("the first over {} rows, the second over {}", one.size(), two.size()));
+  if (!is_sure && other.states_unit) return;
+  double ratio = mean_step(two) / mean_step(one);
+  if (is_sure && other.states_unit)
+    ratio *= other.factor / time.factor;
+  else if (is_sure != other.states_unit || std::max(ratio, 1.0 / ratio) > in_other_units)
+    return;
+  if (std::abs(ratio - 1.0) >= alike)
+    refuse(fmt::format("the second at {:.4g} times the rate of the first", 1.0 / ratio));
+}
+
+bool names_motion(const RecordTable& table) {
+  for (std::size_t index = 0; index < std::min(table.names.size(), table.width()); ++index)
+    if (const auto found = recognised(table, index); found && found->kind == RecognisedColumn::Kind::signal &&
+                                                     found->states_quantity &&
+                                                     found->quantity != Quantity::force)
+      return true;
+  return false;
+}
+
 void leave_out_repeated(RecordTable& table, const RecordColumns& columns) {
   constexpr double few = 0.2;  // of the rows
   if (!columns.time) return;
@@ -239,6 +284,8 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
     columns.channels.push_back(find_column(table, wanted));
   if (format.time) {
     columns.time = {find_index(table, *format.time), format.time->factor, {}};
+    if (format.channels.empty())
+      std::erase_if(columns.channels, [&](const auto& one) { return one.index == columns.time->index; });
     compare_statement({}, format.time->factor, columns.time->index, table);
   }
   if (!columns.time && table.time) columns.time = RecordColumn{*table.time, 1, {}};

@@ -50,6 +50,15 @@ RecordColumns columns_of_header(RecordTable& table, bool stamped);
 /// Times alone, where channels are stated. @throws InputError likewise.
 void find_times(RecordTable& table, RecordColumns& columns);
 
+/// Whether some column is named for what moves: others, of neither quantity nor unit, are something else.
+bool names_motion(const RecordTable& table);
+
+/// Two columns of times, each for the channels beside it.
+/// @param time that is taken; @param is_sure whether its unit is stated; @param index of the other
+/// @throws InputError where they run at different rates, whatever their units, or over different rows
+void require_one_clock(const RecordTable& table, const RecordColumn& time, bool is_sure, std::size_t index,
+                       const RecognisedColumn& other);
+
 /// The column that a description names. @throws InputError at the header or the first row.
 std::size_t find_index(const RecordTable& table, const ColumnDescription& wanted);
 

@@ -16,16 +16,6 @@ namespace {
 constexpr std::size_t most_header_lines = 4;
 constexpr const char* rows_expected = "; expected rows of numbers in columns";
 
-bool is_row(const std::vector<std::string_view>& fields, bool with_gaps) {
-  bool read = false;
-  for (const std::string_view field : fields) {
-    const bool reading = is_reading(field);
-    if (!reading && !(with_gaps && says_missing(field))) return false;
-    read = read || reading;
-  }
-  return read;
-}
-
 /// "Started:", "*STARTTIME", "[Start]": above a value of the file's head.
 bool is_title(std::string_view line) {
   return line.ends_with(':') || line.starts_with('*') || (line.starts_with('[') && line.ends_with(']'));
@@ -52,12 +42,18 @@ bool counts_columns(const std::vector<std::string_view>& fields) {
   return fields.size() > 2 - first;
 }
 
+/// With those at its end that hold nothing.
+std::vector<std::string_view> cells_of(std::string_view line, char separator) {
+  std::vector<std::string_view> cells;
+  split_fields(line, separator == '\0' ? separator_of(line) : separator, cells, true);
+  return cells;
+}
+
 /// Columns of the rows, where all across a text have as many; 0: they do not.
 std::size_t width_across(std::string_view text, char separator) {
   std::size_t width = 0;
   const bool one = holds_across(text, [&](std::string_view line) {
-    std::vector<std::string_view> cells;
-    split_fields(line, separator == '\0' ? separator_of(line) : separator, cells, true);
+    const auto cells = cells_of(line, separator);
     const std::size_t before = std::exchange(width, cells.size());
     return before == 0 || before == width;
   });
@@ -139,11 +135,6 @@ class DelimitedText::Body {
   DelimitedText taken() const;              ///< the text at its first row
 
  private:
-  std::vector<std::string_view> cells_of(std::string_view line, char separator) const {
-    std::vector<std::string_view> cells;
-    split_fields(line, separator == '\0' ? separator_of(line) : separator, cells, true);
-    return cells;
-  }
   bool read_line();  ///< false: there is none
   bool is_in_head(const EarlyLine& row) const;
   void take_rows_above();
@@ -172,6 +163,11 @@ bool DelimitedText::Body::read_line() {
     split_fields(found_.line_, ' ', parted);
     if (parted.size() > 1 && all_numbers(parted, ',')) found_.fields_ = parted;
   }
+  // Below as many names as rows have cells, those at the end of a row may hold nothing.
+  const auto names_all = [&](const EarlyLine& line) { return line.width == usual_ && !line.rows; };
+  if (usual_ > 2 && found_.fields_.size() < usual_ && std::ranges::any_of(lines_, names_all))
+    if (auto cells = cells_of(found_.line_, text_.separator_); cells.size() == usual_)
+      found_.fields_ = std::move(cells);
   lines_.push_back({found_.line_, found_.line_number_, found_.fields_.size(), is_row(found_.fields_, true)});
   fields_.push_back(found_.fields_);
   return true;
@@ -261,6 +257,11 @@ bool DelimitedText::Body::has_odd_line_above() const {
   if (first_ == 0 || is_word_line_above() || may_name(first_ - 1) || is_statement(lines_[first_ - 1].text))
     return false;
   if (fields_[first_][0].empty() && !fields_[first_ - 1][0].empty()) return false;  // a key
+  const auto is_key = [](const auto& fields) { return fields.size() == 2 && !is_reading(fields[0]); };
+  if (width_ == 2 &&
+      std::all_of(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(first_), is_key) &&
+      !names(0))
+    return false;  // "SampleRate,100", "Gain,2.0"
   for (std::size_t k = 0; k < first_; ++k)
     if (lines_[first_ - 1].width == width_ || (may_name(k) && names(k))) return true;
   return false;
@@ -402,6 +403,10 @@ std::vector<std::string_view> DelimitedText::named(std::string_view line, std::s
 }
 
 void DelimitedText::take_comment() {
+  if (comments_.empty()) return;
+  std::erase_if(comments_, [&](const Comment& comment) {  // "Sample rate: 100 Hz", above one column
+    return width_ == 1 && words_of_comment(comment.text).find_first_of(":=") != std::string_view::npos;
+  });
   if (comments_.empty()) return;
   const auto fitting = std::find_if(comments_.rbegin(), comments_.rend(), [&](const Comment& comment) {
     std::vector<std::string_view> fields = named(words_of_comment(comment.text), width_);

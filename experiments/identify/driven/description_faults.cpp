@@ -142,23 +142,40 @@ void add_structure_changes(const DrivenProblem& problem, const OtherModels& mode
   }
 }
 
-void add_gains(const Record& record, const LineScores& left, std::vector<DescriptionFault>& faults) {
-  const auto add = [&](const std::string& name, const VectorXd& direction) {
+/// Gains, each with the unknowns fitted anew beside it, by the noise that is left then.
+void add_gains(const DrivenProblem& problem, const Record& record, const LineScores& left,
+               const VectorXd& theta, std::vector<DescriptionFault>& faults) {
+  using Reading = std::function<void(RecordLines & lines, double gain)>;
+  // A gain is reading over truth: the model's inputs times 1 + c are the truth.
+  const auto add = [&](const std::string& name, const VectorXd& direction, bool is_input,
+                       const Reading& with_gain) {
     constexpr double least = 0.02;  // a gain is next to the masses and stiffnesses that are asked
     const auto score = left.score(direction, least);
     constexpr double largest = 0.6, turned = 0.2;  // a sign is a gain of -1
     if (!score || !(score->score > sure_score)) return;
     if (std::abs(score->change) > largest && std::abs(score->change + 2.0) > turned) return;
-    faults.push_back({fmt::format("gain of {} {:.4g} +- {:.2g} by the record", name, 1.0 + score->change,
-                                  quantile_95 * score->deviation),
-                      score->score, score->explained, score->moved});
+    DrivenProblem there = problem;
+    with_gain(there.parts.front(), 1.0 + score->change);
+    VectorXd found = theta + score->moved;
+    try {
+      weigh_by_residual(there, found);
+      if (const auto fit = promising_fit(there, found, std::numeric_limits<double>::infinity()))
+        found = fit->theta;
+    } catch (const std::runtime_error&) {  // no motion there
+    }
+    const double factor = 1.0 + score->change, gain = is_input ? 1.0 / factor : factor,
+                 deviation = score->deviation * (is_input ? gain * gain : 1.0);
+    faults.push_back(
+        {fmt::format("gain of {} {:.4g} +- {:.2g} by the record", name, gain, quantile_95 * deviation),
+         score->score, score->explained, found - theta});
   };
   const std::vector<Index> outputs = output_channels(record), inputs = input_channels(record);
-  for (std::size_t i = 0; i < outputs.size() && outputs.size() > 1; ++i)
-    add(record.channels[static_cast<std::size_t>(outputs[i])].name, left.gain_of(static_cast<Index>(i)));
+  for (Index i = 0; i < std::ssize(outputs) && outputs.size() > 1; ++i)
+    add(record.channels[static_cast<std::size_t>(outputs[static_cast<std::size_t>(i)])].name, left.gain_of(i),
+        false, [i](RecordLines& lines, double gain) { lines.outputs.row(i) /= gain; });
   const std::string driver = inputs.size() == 1 ? record.channels[static_cast<std::size_t>(inputs[0])].name
                                                 : "the inputs, beside that of the outputs,";
-  add(driver, left.gain_of_inputs());
+  add(driver, left.gain_of_inputs(), true, [](RecordLines& lines, double gain) { lines.inputs *= gain; });
 }
 
 /// Of records whose inputs hold noise, which clocks/likeliest_clock.hpp takes for exact.
@@ -284,7 +301,7 @@ DescriptionTests description_tests(const Experiment& experiment, const Record& r
     constexpr double much = 0.03, misplaced = 0.15;  // a sensor one floor off: a residual of 20 % and more
     add_structure_changes(*problem, models, experiment, left, theta, fit.left_share > much,
                           measures_force(record), faults);
-    add_gains(record, left, faults);
+    add_gains(*problem, record, left, theta, faults);
     add_path(*problem, record, left, theta, faults);
     if (problem->input_noise.size() > 0) add_lags(record, left, faults);
     if (fit.left_share > misplaced)

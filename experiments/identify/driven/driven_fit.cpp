@@ -371,12 +371,15 @@ std::optional<DrivenFit> fit_driven(DrivenProblem& problem, int most_draws) {
             well_damped(*problem.model, middle + draw_spread * known.cwiseProduct(standard_normal(
                                                                    q, 1, static_cast<std::uint64_t>(i)))),
             first_steps);
-  for (int i = 0; i < most_draws && best->left_share > usual_left; ++i) {
+  constexpr double made = 0.1;  // of what was read: a wrong valley may leave a quarter
+  const DrivenFit nearest = *best;
+  for (int i = 0; i < most_draws && nearest.left_share > usual_left && best->left_share > made; ++i) {
     const double spread = i % 2 == 0 ? 1.0 : 0.3;  // of deviations known beforehand
     const VectorXd& from = i % 4 < 2 ? middle : problem.prior.mean;
     const VectorXd draw = standard_normal(q, 1, static_cast<std::uint64_t>(draws + i));
     descend(search, well_damped(*problem.model, from + spread * known.cwiseProduct(draw)), 20);
   }
+  if (best->left_share > made) best = nearest;  // no draw makes the record either
   for (int i = 0; i < 2; ++i) {
     problem.weights = best->left.cwiseMax(least_left * size).cwiseInverse();
     const VectorXd start = best->theta;

@@ -121,7 +121,8 @@ DrivenFit fit_driven_from(const DrivenProblem& problem, const Eigen::VectorXd& s
 
 /// The same from several starts: every stiffness times a common factor of 1/4 to 4, modes well damped so that
 /// their resonances are wide, and draws about the best. The weights become those of what is left.
-/// @param most_draws more, about the best and the prior's mean, as long as 30 % of the lines' size are left
+/// @param most_draws more, about the best and the prior's mean, where 30 % of the lines' size are left, to 10
+/// %
 /// @returns absent where no start has a motion
 std::optional<DrivenFit> fit_driven(DrivenProblem& problem, int most_draws = 0);
 

@@ -268,15 +268,16 @@ bool judge_faults(ComparedRun& run) {
       is_material = is_material || std::isinf(fault.score) || move.is_material;
     }
   constexpr double slight = 3.0;  // % of the motion
-  const auto mention = [&](const std::string& what, double statistic, double limit) {
-    run.objections.emplace_back("description",
-                                "One thing described otherwise explains the residual: " + what +
-                                    ". Allowed for, it moves no estimate out of its interval.",
-                                statistic, limit);
+  const auto mention = [&](const std::string& what, double statistic, double limit, bool all = false) {
+    run.objections.emplace_back(
+        "description",
+        fmt::format("One thing described otherwise explains {}the residual: ", all ? "" : "a part of ") +
+            what + ". Allowed for, it moves no estimate out of its interval.",
+        statistic, limit);
   };
   if (count > 0 && (moves ? !is_material && has_small_residual(run) : run.misfit_percent < slight)) {
     if (moves) hold_moved(run, moved_by(run.description.faults.front()));
-    mention(named, run.description.faults.front().explained, mostly);
+    mention(named, run.description.faults.front().explained, mostly, true);
     return true;
   }
   std::string held;

@@ -159,7 +159,7 @@ std::unique_ptr<filters::DiscreteModel> Passes::discretised(const MatrixXd& nois
 }
 
 bool Passes::has_settled() const {
-  return last_move_ <= settled_move;
+  return !(last_move_ > settled_move);
 }
 
 // What one mode leaves of the record, of a model that has no more: known without a discretisation.

@@ -167,7 +167,7 @@ std::optional<filters::Gaussian> Passes::output_error(VectorXd state, Index firs
     const VectorXd moved =
         (unknowns.mean - state(places)).cwiseQuotient(unknowns.covariance.diagonal().cwiseSqrt());
     state = found.state;
-    if (!(moved.cwiseAbs().maxCoeff() <= settled)) continue;
+    if (moved.cwiseAbs().maxCoeff() > settled) continue;
     const MatrixXd information = unknowns.covariance.llt().solve(MatrixXd::Identity(q, q)),
                    known = started_.guess.unknowns.llt().solve(MatrixXd::Identity(q, q));
     const MatrixXd whole = (information + known).llt().solve(MatrixXd::Identity(q, q));

@@ -126,6 +126,22 @@ bool reject_drifting(const JointDecayFit& fit, RecordModes& found) {
   return false;
 }
 
+/// A pole that the least squares have taken far beyond the damping of those that are sought: it stands for an
+/// offset or the pulse of a hit. @returns whether there was one
+bool reject_runaway(const std::vector<Pole>& poles, const StabilisationSettings& settings,
+                    RecordModes& found) {
+  constexpr double far = 2.0;
+  for (std::size_t m = 0; m < poles.size(); ++m) {
+    if (!(poles[m].damping_ratio() > far * settings.largest_damping_ratio)) continue;
+    reject(
+        m,
+        fmt::format("runs away in the least squares, to a damping ratio of {:.2g}", poles[m].damping_ratio()),
+        found);
+    return true;
+  }
+  return false;
+}
+
 /// Nothing where it does not converge: then the weakest mode is rejected.
 std::optional<JointDecayFit> fit_or_reject(RecordModes& found) {
   std::vector<std::complex<double>> start;
@@ -241,6 +257,7 @@ void polish(RecordModes& found, const StabilisationSettings& settings) {
     }
     if (reject_least_certain(*fit, settings, found)) continue;
     const std::vector<Pole> poles = poles_of(*fit);
+    if (reject_runaway(poles, settings, found)) continue;
     if (!split && (reject_twin(poles, found) || reject_drifting(*fit, found))) continue;
     Modes lost;
     for (const ModeEstimate& mode : all)

@@ -199,7 +199,8 @@ void add_shapes(const VectorXd& scales, RecordModes& found) {
   found.reproduced = fit.reconstruction;
   for (std::size_t m = 0; m < found.modes.size(); ++m) {
     Pole& pole = found.modes[m].pole;
-    const Eigen::VectorXcd part = fit.shapes.col(static_cast<Index>(m));
+    Eigen::VectorXcd part = fit.shapes.col(static_cast<Index>(m));
+    if (!found.free_decay) part *= std::exp(-pole.rate * found.interval);  // from the first lag, dt, to none
     if (found.free_decay) {
       pole.shape = part;
     } else {  // an autocorrelation's part is the square of a root mean square; phases are the shape's
@@ -370,7 +371,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   found.mode_by_mode = registry.find(settings.method.name).contracts.contains(contract::mode_by_mode);
   found.record = complete_part(motion_of(record), found.remarks);
   const Record whole = found.record;
-  if (found.free_decay && !windowed) found.record = from_release(found.record, found.remarks);
+  if (found.free_decay && !windowed) found.record = from_release(found.record, record, found.remarks);
   check_intervals(found.record);
   const double interval = found.record.interval();
   const VectorXd scales = scales_of(found.record);

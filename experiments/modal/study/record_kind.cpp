@@ -27,6 +27,14 @@ double active_share(const VectorXd& signal) {
          static_cast<double>(size.size());
 }
 
+/// Pulses or steps of a table, far above its noise.
+bool has_pulses(const VectorXd& signal) {
+  constexpr double smallest = 0.05, noise = 10.0;  // of the largest; median deviations
+  constexpr Index fewest = 4;                      // samples
+  const VectorXd size = (signal.array() - median(signal)).abs();
+  return (size.array() > std::max(smallest * size.maxCoeff(), noise * median(size))).count() >= fewest;
+}
+
 }  // namespace
 
 bool is_struck(const Record& record) {
@@ -52,9 +60,12 @@ bool is_struck(const Record& record) {
 bool is_driven(const Record& record) {
   constexpr double least_active = 0.03;
   for (Index i = 0; i < record.samples.rows(); ++i) {
-    if (!is_input(record.channels[static_cast<std::size_t>(i)].quantity)) continue;
+    const Quantity quantity = record.channels[static_cast<std::size_t>(i)].quantity;
+    if (!is_input(quantity)) continue;
     const VectorXd signal = record.samples.row(i).transpose();
-    if (signal.allFinite() && active_share(signal) > least_active) return true;
+    if (!signal.allFinite()) continue;
+    if (active_share(signal) > least_active || (quantity != Quantity::force && has_pulses(signal)))
+      return true;
   }
   return false;
 }
@@ -309,15 +320,35 @@ std::pair<Index, Index> longest_decay(const VectorXd& signal, const std::vector<
   return longest;
 }
 
+/// The first sample behind the pulses of a measured force that stand in the first half of a part.
+Index behind_pulses(const Record& record, const Record& measured, Index from, Index to) {
+  constexpr double smallest = 0.02, noise = 8.0, most = 0.05;  // of the largest; deviations; of the samples
+  double last = record.time[from] - record.interval();
+  for (Index input = 0; input < measured.samples.rows(); ++input) {
+    if (measured.channels[static_cast<std::size_t>(input)].quantity != Quantity::force) continue;
+    const VectorXd force = measured.samples.row(input).transpose();
+    if (!force.allFinite()) continue;
+    const VectorXd size = (force.array() - median(force)).abs();
+    const double limit = std::max(smallest * size.maxCoeff(), noise * median(size));
+    const auto above = (size.array() > limit).eval();
+    if (static_cast<double>(above.count()) > most * static_cast<double>(size.size())) continue;  // no hammer
+    for (Index k = 0; k < size.size() && measured.time[k] < record.time[(from + to) / 2]; ++k)
+      if (above[k]) last = std::max(last, measured.time[k]);
+  }
+  while (from + fewest_decay_samples < to && record.time[from] <= last) ++from;
+  return from;
+}
+
 }  // namespace
 
-Record from_release(const Record& record, std::vector<std::string>& remarks) {
+Record from_release(const Record& record, const Record& measured, std::vector<std::string>& remarks) {
   const VectorXd size = record.samples.rowwise().norm().cwiseMax(1e-300);
   Index channel = 0, begin = 0;
   (size.cwiseInverse().asDiagonal() * record.samples).cwiseAbs().maxCoeff(&channel, &begin);
   const VectorXd signal = record.samples.row(channel).array() - record.samples.row(channel).mean();
   if (const std::vector<Index> hits = hits_of(signal, record.interval()); !hits.empty()) {
-    const auto [from, to] = longest_decay(signal, hits);
+    auto [from, to] = longest_decay(signal, hits);
+    from = behind_pulses(record, measured, from, to);
     if (to - from >= fewest_decay_samples) {
       remarks.push_back(
           fmt::format("{} hits, the first at {} s: the longest decay between them is taken, {} to "
@@ -327,10 +358,12 @@ Record from_release(const Record& record, std::vector<std::string>& remarks) {
       return part_of(record, from, to - from);
     }
   }
-  if (begin == 0 || record.size() - begin < fewest_decay_samples) return record;
-  remarks.push_back(fmt::format("Window chosen automatically: the decay from the largest reading on, {} s.",
-                                instant_text(record.time[begin])));
-  return part_of(record, begin, record.size() - begin);
+  const Index behind = behind_pulses(record, measured, begin, record.size());
+  if (behind == 0 || record.size() - behind < fewest_decay_samples) return record;
+  remarks.push_back(fmt::format("Window chosen automatically: the decay from {} on, {} s.",
+                                behind > begin ? "the end of the force's pulse" : "the largest reading",
+                                instant_text(record.time[behind])));
+  return part_of(record, behind, record.size() - behind);
 }
 
 void check_intervals(const Record& record) {

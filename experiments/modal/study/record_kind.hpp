@@ -20,7 +20,7 @@ namespace beamid::experiments {
 bool is_struck(const Record& record);
 
 /// Whether an input was measured, of a base or a force, that acts for a part of the record: a thirtieth of
-/// its samples above a twentieth of its largest. A single hit does not.
+/// its samples above a twentieth of its largest. A single hit does not; pulses of a base do.
 bool is_driven(const Record& record);
 
 /// The channel of motion that moves most, of those that measure what the first does, goes before the others:
@@ -95,8 +95,9 @@ Record motion_of(const Record& record);
 Record complete_part(const Record& record, std::vector<std::string>& remarks);
 
 /// From the largest reading on, relative to each channel's own size; of a record with several hits, the
-/// longest decay between two of them.
-Record from_release(const Record& record, std::vector<std::string>& remarks);
+/// longest decay between two of them. Where a hammer's force is measured, behind its pulses.
+/// @param measured the record with its forces
+Record from_release(const Record& record, const Record& measured, std::vector<std::string>& remarks);
 
 /// @throws std::invalid_argument unless the intervals are equal within 20 %.
 void check_intervals(const Record& record);

@@ -65,8 +65,10 @@ void add_records(RecordTable& table, std::string_view data, const std::string& h
   struct Field {
     std::size_t offset;
     Numbers numbers;
+    std::optional<double> tick = {};  ///< of instants [s]
   };
-  static const std::regex field(R"(\('([^']*)',\s*'([<>|=][a-zA-Z])([0-9]{1,6})'(,?\s*\([^)]*\))?\))"),
+  static const std::regex field(
+      R"(\('([^']*)',\s*'([<>|=][a-zA-Z])([0-9]{1,6})(?:\[([a-z]+)\])?'(,?\s*\([^)]*\))?\))"),
       one(R"('shape'\s*:\s*\((\d{1,18}),\s*\))");
   std::smatch shape;
   if (!std::regex_search(header, shape, one)) throw refuse("records in more dimensions");
@@ -75,9 +77,14 @@ void add_records(RecordTable& table, std::string_view data, const std::string& h
   const std::size_t before = table.columns.size(), rows = std::stoull(shape[1]);
   for (std::sregex_iterator at(header.begin(), header.end(), field), end; at != end; ++at) {
     const std::string kind = (*at)[2];
-    if ((*at)[4].length() > 0) throw refuse("records that hold arrays");
+    if ((*at)[5].length() > 0) throw refuse("records that hold arrays");
     const std::size_t size = std::stoull((*at)[3]) * (kind[1] == 'U' ? 4 : 1);
-    if (const Numbers numbers(kind + (*at)[3].str()); numbers.type) {
+    if (const auto tick = seconds_per_unit((*at)[4].str()); kind[1] == 'M' && tick) {
+      fields.push_back({length, Numbers(kind.substr(0, 1) + "i8"), tick});
+      table.time = before + fields.size() - 1;
+      table.names.push_back((*at)[1]);
+      table.precision.push_back(PrintedPrecision::of_digits(15));
+    } else if (const Numbers numbers(kind + (*at)[3].str()); numbers.type) {
       fields.push_back({length, numbers});
       table.names.push_back((*at)[1]);
       table.precision.push_back(PrintedPrecision::of_digits(numbers.type->digits));
@@ -87,11 +94,17 @@ void add_records(RecordTable& table, std::string_view data, const std::string& h
   }
   if (fields.empty() || rows == 0 || rows > data.size() / length)
     throw refuse("fewer records of numbers than the header states");
+  if (rows * length != data.size()) throw refuse("records of other fields than numbers, texts and instants");
   if (before > 0 && table.rows() != rows) throw refuse("another length than the arrays before it");
   for (const Field& one_field : fields) {
     std::vector<double>& column = table.columns.emplace_back();
+    const auto at = [&](std::size_t row) { return data.data() + row * length + one_field.offset; };
+    const auto ticks = [&](std::size_t row) {
+      return number_of_bytes<std::int64_t>(at(row), one_field.numbers.swapped);
+    };
     for (std::size_t row = 0; row < rows; ++row)
-      column.push_back(one_field.numbers.read(data.data() + row * length + one_field.offset));
+      column.push_back(one_field.tick ? *one_field.tick * static_cast<double>(ticks(row) - ticks(0))
+                                      : one_field.numbers.read(at(row)));
   }
 }
 

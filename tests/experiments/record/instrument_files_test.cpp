@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "experiments/record/inspect/inspection.hpp"
 #include "experiments/record/read_record.hpp"
@@ -152,6 +153,85 @@ TEST(ColumnsWithoutNames, ThatOnlyRiseAreNoMotion) {
   }));
   EXPECT_THAT(record.channel_names(), ElementsAre("column_3"));
   EXPECT_THAT(record.remarks, Contains(HasSubstr("only rise, omitted: 2")));
+}
+
+TEST(RowOfUnits, MayMixThoseOfUdunitsWithOthers) {
+  const Record record =
+      recognised("Time,Accel,Velocity,LVDT\ns,g,cm/s,in\n" + signal_rows(rows, [](int k, double a) {
+                   return fmt::format("{:.4f},{:.5f},{:.5f},{:.5f}", 0.0025 * k, a, a, a);
+                 }));
+  EXPECT_NEAR(record.samples(1, 0), 1e-2, 1e-9);
+  EXPECT_EQ(record.channels[2].quantity, Quantity::displacement);
+  EXPECT_NEAR(record.samples(2, 0), 0.0254, 1e-9);
+}
+
+TEST(ColumnsBesideAccelerations, OfNeitherQuantityNorUnitAreOmitted) {
+  const Record inertial = recognised("t,Ax,Ay,Gx,Gy,p\n" + signal_rows(rows, [](int k, double a) {
+                                       return fmt::format("{:.4f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f}",
+                                                          0.0025 * k, a, -a, 0.3 * a, 2.0, 0.1 * a);
+                                     }));
+  EXPECT_THAT(inertial.channel_names(), ElementsAre("Ax", "Ay"));
+  const Record scope = recognised("Time,A,B\n" + two_signals());  // channels by letters
+  EXPECT_THAT(scope.channel_names(), ElementsAre("A", "B"));
+}
+
+// A second run beside the first, over fewer rows.
+TEST(TwoClocks, AreAQuestionWhereTheirRowsEndApart) {
+  const std::string text =
+      "Time A [s],A [g],Time B [s],B [g]\n" + signal_rows(rows, [](int k, double a) {
+        return k < 40 ? fmt::format("{:.4f},{:.5f},{:.4f},{:.5f}", 0.0025 * k, a, 0.004 * k, a)
+                      : fmt::format("{:.4f},{:.5f},,", 0.0025 * k, a);
+      });
+  EXPECT_THAT(question_of(text),
+              HasSubstr("times of two clocks, the first over 60 rows, the second over 40"));
+}
+
+TEST(CommentAboveOneColumn, ThatStatesSomethingIsNoName) {
+  const auto column = [](int, double a) { return fmt::format("{:.5f}", a); };
+  for (const char* text : {"# Sample rate: 100 Hz\n", "# dt = 0.01 s\n",
+                           "# Sample rate: 100 Hz\n# Displacement of the shaker: 5 mm\n"}) {
+    const Record record = recognised(text + signal_rows(rows, column));
+    EXPECT_NEAR(record.interval(), 0.01, 1e-12) << text;
+    EXPECT_EQ(record.channels[0].quantity, Quantity::acceleration) << text;
+    EXPECT_NEAR(record.samples(0, 0), 1.0, 1e-9) << text;
+  }
+}
+
+// The first and the last row alone fill the cells at their ends.
+TEST(Logger, HasCellsAtTheEndsOfRowsThatHoldNothing) {
+  const Record record =
+      recognised("\"#\",\"Time (s)\",\"X Accel, g\",\"Started\",\"End Of File\"\n" +
+                 signal_rows(rows, [](int k, double a) {
+                   return fmt::format("{},{:.4f},{:.5f},{},{}", k + 1, 0.0025 * k, a, k == 0 ? "Logged" : "",
+                                      k == rows - 1 ? "Logged" : "");
+                 }));
+  EXPECT_THAT(record.channel_names(), ElementsAre("X Accel, g"));
+  EXPECT_EQ(record.size(), rows);
+}
+
+TEST(Telephone, WritesSoManyOfSoMany) {
+  const Record record = recognised(
+      "ACCELEROMETER X (m/s\xc2\xb2);Satellites in range;TIME SINCE START (ms)\n" +
+      signal_rows(rows, [](int k, double a) { return fmt::format("{:.5f};6 / 12;{}", a, 10 * k); }));
+  EXPECT_THAT(record.channel_names(), ElementsAre("ACCELEROMETER X (m/s\xc2\xb2)"));
+}
+
+// np.save of [('t', '<M8[ns]'), ('acc', '<f8')].
+TEST(NumpyRecords, MayHoldInstants) {
+  const std::string header =
+      "{'descr': [('t', '<M8[ns]'), ('acc', '<f8')], 'fortran_order': False, 'shape': (60,), }\n";
+  std::string bytes = "\x93NUMPY\x01" + std::string(1, '\0') + static_cast<char>(header.size()) +
+                      std::string(1, '\0') + header;
+  for (std::int64_t k = 0; k < rows; ++k) {
+    const std::int64_t instant = 1'764'528'000'000'000'000 + 2'500'000 * k;
+    const double value = std::cos(0.3 * static_cast<double>(k));
+    bytes.append(reinterpret_cast<const char*>(&instant), 8).append(reinterpret_cast<const char*>(&value), 8);
+  }
+  const TemporaryFile file("record.npy", bytes);
+  const Record record = read_record(file.path(), {});
+  EXPECT_EQ(record.size(), rows);
+  EXPECT_NEAR(record.interval(), 0.0025, 1e-12);
+  EXPECT_NEAR(record.samples(0, 1), std::cos(0.3), 1e-12);
 }
 
 TEST(Inspection, ReadsWhatOtherCommandsRead) {

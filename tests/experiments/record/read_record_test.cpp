@@ -222,7 +222,9 @@ TEST(ReadRecord, RefusesHeadersThatDoNotTellTheUnits) {
             "bad.txt:1: unknown column 'acceleration_ft_per_s2'; expected names with units (" KNOWN
             "), or --column N --quantity acceleration --unit g, or record.channels in the configuration"},
            {"time_s\n0\n1\n", "bad.txt:1: no column but time; expected a measured quantity"},
-           {"time_s,time_ms,force_n\n0,1,2\n1,1,2\n", "bad.txt:1: two columns of time; expected one"},
+           {"time_s,time_ms,force_n\n0,1,2\n1,1,2\n",
+            "bad.txt:1: columns 1 and 2 are times; expected one of them, and what it is of: --time 1:s "
+            "--column N, or --time 2:s --column N"},
            {"force_n\n0\n1\n",
             "bad.txt: no column of time; expected the sampling rate, --rate HZ, or the column, --time "
             "COLUMN:UNIT (record.sampling_rate_hz, record.time in the configuration)"}});

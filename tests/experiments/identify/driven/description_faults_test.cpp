@@ -75,7 +75,7 @@ TEST(DescriptionFaults, AMassIsNamedWithItsValue) {
 TEST(DescriptionFaults, AGainOfTheBaseIsNamed) {
   Record record = shaken(1);
   record.samples.row(0) *= 0.9;
-  expect_named(identified(record, 1.0, 1.0), "gain of table 1.1", 0.9);
+  expect_named(identified(record, 1.0, 1.0), "gain of table 0.90", 0.9);
 }
 
 TEST(DescriptionFaults, AGainOfOneSensorIsNamed) {

@@ -8,7 +8,9 @@
 #include <numbers>
 
 #include "experiments/modal/study/modal_study.hpp"
+#include "experiments/modal/study/record_kind.hpp"
 #include "experiments/signal/toolbox.hpp"
+#include "tests/experiments/modal/shaken_chain.hpp"
 
 namespace beamid::experiments::find_modes_test {
 namespace {
@@ -293,6 +295,60 @@ TEST(FindModes, TakesTheLongestDecayBetweenHits) {
   EXPECT_NEAR(found.record.time[0], 2.8, 0.1);
   EXPECT_LT(found.record.time.tail(1)[0], 7.8);
   EXPECT_THAT(PrintToString(found.remarks), HasSubstr("3 hits"));
+}
+
+// Oracle: the modes' own variances, 1 / (1 - |e^(s dt)|^2). The second lies above a quarter of the rate.
+TEST(FindModes, HaveTheAmplitudesOfRandomVibrationAtNoLag) {
+  const test::ShakenChain chain{.interval = 0.16};
+  Record record;
+  record.samples = chain.record(20'000, 3);
+  record.time =
+      VectorXd::LinSpaced(record.samples.cols(), 0, 0.16 * static_cast<double>(record.samples.cols() - 1));
+  record.channels = {{Quantity::acceleration, "a"}, {Quantity::acceleration, "b"}};
+  ModalStudySettings settings;
+  settings.method.name = "ssi_cov";
+  const RecordModes found = find_modes("shaken", record, false, settings);
+  ASSERT_EQ(found.modes.size(), 2U);
+  for (std::size_t m = 0; m < 2; ++m) {
+    const auto [frequency, ratio, share] = chain.modes()[m];
+    const double rms = 1.0 / std::sqrt(1.0 - std::exp(-4.0 * pi * frequency * ratio * chain.interval));
+    const Eigen::VectorXd shape = found.modes[m].pole.shape.cwiseAbs();
+    EXPECT_NEAR(shape[0], rms, 0.1 * rms) << m;
+    EXPECT_NEAR(shape[1] / shape[0], share, 0.05) << m;
+  }
+}
+
+// What the structure does under the hammer is no decay, and is larger than what follows.
+TEST(FindModes, BeginBehindThePulseOfAMeasuredForce) {
+  constexpr Index begin = 100, end = 120, count = 2000;
+  VectorXd motion = 1e-3 * standard_normal(count, 5, 1), force = VectorXd::Zero(count);
+  for (Index k = begin; k < count; ++k) {
+    const double t = 1e-3 * static_cast<double>(k - end);
+    if (k < end) force[k] = 50.0 * std::sin(pi * static_cast<double>(k - begin) / 20.0);
+    motion[k] += k < end ? 0.1 * force[k] : std::exp(-3.0 * t) * std::cos(2 * pi * 20.0 * t);
+  }
+  Record record = record_of(motion, 1e-3);
+  record.samples.conservativeResize(2, Eigen::NoChange);
+  record.samples.row(1) = force.transpose();
+  record.channels.push_back({Quantity::force, "hammer"});
+  const RecordModes found = find_modes("hit", record, false, {});
+  EXPECT_GE(found.record.time[0], record.time[end - 1]);
+  EXPECT_THAT(PrintToString(found.remarks), HasSubstr("from the end of the force's pulse on"));
+  ASSERT_EQ(found.modes.size(), 1U);
+  EXPECT_NEAR(found.modes[0].pole.damping_ratio(), 3.0 / (2 * pi * 20.0), 4e-5);
+}
+
+TEST(IsDriven, ByPulsesOfABaseAndNotByItsNoise) {
+  VectorXd base = 1e-3 * standard_normal(4000, 9, 1);
+  Record record = record_of(standard_normal(4000, 9, 2), 0.01);
+  record.samples.conservativeResize(2, Eigen::NoChange);
+  record.channels.push_back({Quantity::base_acceleration, "table"});
+  record.samples.row(1) = base.transpose();
+  record.channels[1].quantity = Quantity::force;
+  record.samples.row(1).segment(1000, 6).setConstant(1.0);
+  EXPECT_FALSE(is_driven(record));  // one hit of a hammer
+  record.channels[1].quantity = Quantity::base_acceleration;
+  EXPECT_TRUE(is_driven(record));
 }
 
 }  // namespace
