@@ -26,8 +26,8 @@ bool holds_words(const RecordTable& table, std::size_t index) {
   for (std::size_t row = 0; table.cell && row < values.size(); ++row) {
     if (std::isfinite(values[row])) continue;
     const std::string text = table.cell(row, index).text;
-    const std::size_t first = text.find_first_not_of("\"'+-.,");
     if (text.find(" / ") != text.npos) continue;  // "6 / 12": so many of so many
+    const std::size_t first = text.find_first_not_of("\"'+-.,");
     if (first != text.npos && text[first] >= '0' && text[first] <= '9') throw table.fault(row, index);
   }
   return true;
@@ -110,8 +110,8 @@ std::optional<std::size_t> rising_time(const RecordTable& table) {
   return {};
 }
 
-// "x", "N", "up": of columns whose quantity others state.
-bool is_direction(const std::string& name) {
+// "x", "N", "up", "tip", "ch3": of columns whose quantity others state.
+bool is_direction_or_place(const std::string& name) {
   static const std::regex form(
       "[a-oq-z][0-9]*|ns|ew|ud|up|north|south|east|west|vert.*|.*(tip|top|mid|base|floor).*|(ch|kanal|sensor)"
       ".*");
@@ -220,7 +220,7 @@ class Recognition {
         break;
       case RecognisedColumn::Kind::signal: {
         if (states_motion_ && !found->states_quantity && !found->states_unit && found->reading.empty() &&
-            !is_direction(name) && std::isfinite(values.front())) {
+            !is_direction_or_place(name) && std::isfinite(values.front())) {
           add(other_);
           break;
         }

@@ -173,17 +173,6 @@ std::filesystem::path places_file(const std::filesystem::path& record) {
   return file.replace_extension(".toml");
 }
 
-namespace {
-
-/// To the SI unit of a quantity; 1 where none of its units is written so.
-double factor_of(const std::optional<std::string>& symbol, Quantity quantity) {
-  for (const Unit& unit : units(quantity))
-    if (symbol == unit.symbol) return unit.factor;
-  return 1.0;
-}
-
-}  // namespace
-
 void take_places(const std::filesystem::path& file, const std::vector<std::string>& columns, Record& record) {
   const std::filesystem::path beside = places_file(file);
   std::error_code ignored;
@@ -205,7 +194,8 @@ void take_places(const std::filesystem::path& file, const std::vector<std::strin
         channel.distance = one.find_number("distance_m").value_or(channel.distance);
       if (!(channel.noise > 0.0))
         if (const auto noise = one.find_number("noise", Sign::not_negative))
-          channel.noise = *noise * factor_of(one.find_text("unit"), channel.quantity);
+          channel.noise =
+              *noise * unit_factor(one.find_text("unit").value_or(""), channel.quantity).value_or(1.0);
     }
   }
   if (record.input_path) return;

@@ -199,8 +199,9 @@ void add_shapes(const VectorXd& scales, RecordModes& found) {
   found.reproduced = fit.reconstruction;
   for (std::size_t m = 0; m < found.modes.size(); ++m) {
     Pole& pole = found.modes[m].pole;
-    Eigen::VectorXcd part = fit.shapes.col(static_cast<Index>(m));
-    if (!found.free_decay) part *= std::exp(-pole.rate * found.interval);  // from the first lag, dt, to none
+    // An autocorrelation begins at a lag of dt: its part is brought back to none.
+    const std::complex<double> back = found.free_decay ? 1.0 : std::exp(-pole.rate * found.interval);
+    const Eigen::VectorXcd part = back * fit.shapes.col(static_cast<Index>(m));
     if (found.free_decay) {
       pole.shape = part;
     } else {  // an autocorrelation's part is the square of a root mean square; phases are the shape's

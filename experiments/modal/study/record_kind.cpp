@@ -19,10 +19,14 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
+VectorXd distance_from_median(const VectorXd& signal) {
+  return (signal.array() - median(signal)).abs();
+}
+
 /// Share of a signal's samples that are farther from its median than a twentieth of the farthest.
 double active_share(const VectorXd& signal) {
   constexpr double quiet = 0.05;
-  const VectorXd size = (signal.array() - median(signal)).abs();
+  const VectorXd size = distance_from_median(signal);
   return static_cast<double>((size.array() > quiet * size.maxCoeff()).count()) /
          static_cast<double>(size.size());
 }
@@ -31,7 +35,7 @@ double active_share(const VectorXd& signal) {
 bool has_pulses(const VectorXd& signal) {
   constexpr double smallest = 0.05, noise = 10.0;  // of the largest; median deviations
   constexpr Index fewest = 4;                      // samples
-  const VectorXd size = (signal.array() - median(signal)).abs();
+  const VectorXd size = distance_from_median(signal);
   return (size.array() > std::max(smallest * size.maxCoeff(), noise * median(size))).count() >= fewest;
 }
 
@@ -328,7 +332,7 @@ Index behind_pulses(const Record& record, const Record& measured, Index from, In
     if (measured.channels[static_cast<std::size_t>(input)].quantity != Quantity::force) continue;
     const VectorXd force = measured.samples.row(input).transpose();
     if (!force.allFinite()) continue;
-    const VectorXd size = (force.array() - median(force)).abs();
+    const VectorXd size = distance_from_median(force);
     const double limit = std::max(smallest * size.maxCoeff(), noise * median(size));
     const auto above = (size.array() > limit).eval();
     if (static_cast<double>(above.count()) > most * static_cast<double>(size.size())) continue;  // no hammer

@@ -2,10 +2,8 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <regex>
 
@@ -19,17 +17,15 @@ namespace {
 constexpr std::string_view magic = "\x93NUMPY", archive_magic = "PK\x03\x04";
 
 template <class Number>
-double number_at(const char* bytes) {
-  Number value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
+double number_at(const char* bytes, bool swapped) {
+  return static_cast<double>(number_of_bytes<Number>(bytes, swapped));
 }
 
 // How a type of numbers is read, and how long each is.
 struct NumberType {
   std::string_view name;
   std::size_t size;
-  double (*read)(const char*);
+  double (*read)(const char*, bool swapped);
   int digits;  ///< that it holds
 };
 constexpr NumberType types[] = {
@@ -49,12 +45,7 @@ struct Numbers {
       if (description.size() == 3 && description.substr(1) == one.name) type = &one;
     swapped = description.starts_with('>');
   }
-  double read(const char* bytes) const {
-    if (!swapped) return type->read(bytes);
-    char turned[8];
-    std::reverse_copy(bytes, bytes + type->size, turned);
-    return type->read(turned);
-  }
+  double read(const char* bytes) const { return type->read(bytes, swapped); }
 };
 
 /// A structured array: a column for every field, "[('t', '<f8'), ('acc', '<f4')]"; what is no number is

@@ -22,38 +22,6 @@ namespace {
 
 using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
 
-const char *const tip = "/'Run 1'/'Tip'", *const hammer = "/'Run 1'/'Hammer'";
-
-std::vector<std::string> in_g(const Writer& write) {
-  return {write.is("unit_string", "g"), write.is("wf_increment", 0.01)};
-}
-std::vector<std::string> in_newton(const Writer& write) {
-  return {write.is("NI_UnitDescription", "N"), write.is("wf_increment", 0.01)};
-}
-
-/// Both signals, the samples from..to-1 in one contiguous chunk. @param first describes the channels
-std::string contiguous(const Writer& write, int from, int to, bool first = true, bool closed = true) {
-  const auto count = static_cast<std::uint64_t>(to - from);
-  const std::string described =
-      write.objects({write.object("/", write.u32(none)), write.object("/'Run 1'", write.u32(none)),
-                     write.object(tip, write.index(float64, count), in_g(write)),
-                     write.object(hammer, write.index(float64, count), in_newton(write))});
-  return write.segment(
-      first ? usual : raw, first ? described : "",
-      values_of<double>(write, first_signal, from, to) + values_of<double>(write, second_signal, from, to),
-      closed);
-}
-
-/// One channel, float64.
-std::string single(const std::vector<std::string>& properties, int samples = written_samples,
-                   const std::string& path = tip) {
-  const Writer write;
-  return write.segment(usual,
-                       write.objects({write.object(
-                           path, write.index(float64, static_cast<std::uint64_t>(samples)), properties)}),
-                       values_of<double>(write, first_signal, 0, samples));
-}
-
 Record record_of(const std::string& bytes) {
   const TemporaryFile file("test.tdms", bytes);
   return read_record(file.path());

@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "tests/experiments/record/files/written_record.hpp"
+
 namespace beamid::experiments::tdms_test {
 
 inline constexpr std::uint32_t metadata = 2, new_list = 4, raw = 8, interleaved = 32, big_endian = 64,
@@ -94,6 +96,40 @@ std::string values_of(const Writer& write, double (*signal)(int), int from, int 
     bytes += write.number(static_cast<Number>(std::is_integral_v<Number> ? std::round(value) : value));
   }
   return bytes;
+}
+
+// Whole files.
+
+inline constexpr const char *tip = "/'Run 1'/'Tip'", *hammer = "/'Run 1'/'Hammer'";
+
+inline std::vector<std::string> in_g(const Writer& write) {
+  return {write.is("unit_string", "g"), write.is("wf_increment", 0.01)};
+}
+inline std::vector<std::string> in_newton(const Writer& write) {
+  return {write.is("NI_UnitDescription", "N"), write.is("wf_increment", 0.01)};
+}
+
+/// Both signals, the samples from..to-1 in one contiguous chunk. @param first describes the channels
+inline std::string contiguous(const Writer& write, int from, int to, bool first = true, bool closed = true) {
+  const auto count = static_cast<std::uint64_t>(to - from);
+  const std::string described =
+      write.objects({write.object("/", write.u32(none)), write.object("/'Run 1'", write.u32(none)),
+                     write.object(tip, write.index(float64, count), in_g(write)),
+                     write.object(hammer, write.index(float64, count), in_newton(write))});
+  return write.segment(
+      first ? usual : raw, first ? described : "",
+      values_of<double>(write, first_signal, from, to) + values_of<double>(write, second_signal, from, to),
+      closed);
+}
+
+/// One channel, float64.
+inline std::string single(const std::vector<std::string>& properties, int samples = written_samples,
+                          const std::string& path = tip) {
+  const Writer write;
+  return write.segment(usual,
+                       write.objects({write.object(
+                           path, write.index(float64, static_cast<std::uint64_t>(samples)), properties)}),
+                       values_of<double>(write, first_signal, 0, samples));
 }
 
 }  // namespace beamid::experiments::tdms_test
