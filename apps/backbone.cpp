@@ -2,6 +2,7 @@
 #include "apps/command_parts.hpp"
 #include "apps/record_options.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/modal/study/driven_study.hpp"
 #include "experiments/modal/study/record_kind.hpp"
 #include "experiments/record/prepare/preparation_step.hpp"
 #include "experiments/studies/backbone/report.hpp"
@@ -47,21 +48,19 @@ int run_backbone(const Values& values) {
     PreparedRecord prepared = read_and_prepare(request.file, request.format);
     prepared.record = made_analysable(prepared.record);
     if (request.format.channels.empty()) put_strongest_first(prepared.record);
-    try {
-      prepared.record = complete_part(motion_of(prepared.record), prepared.record.remarks);
-      if (!request.format.window)
-        prepared.record = from_release(prepared.record, prepared.record, prepared.record.remarks);
-    } catch (const std::invalid_argument& error) {
-      throw InputError({request.file.string()}, error.what());
-    }
-    const Record& record = prepared.record;
+    const Record measured = prepared.record;
     const std::string file = request.file.string();
-    const std::vector<Eigen::Index> outputs = output_channels(record);
+    const std::vector<Eigen::Index> outputs = output_channels(measured);
     if (outputs.empty()) throw InputError({file}, "holds forces only; expected a channel of motion");
-    if (record.channels[static_cast<std::size_t>(outputs[0])].quantity == Quantity::strain)
+    if (measured.channels[static_cast<std::size_t>(outputs[0])].quantity == Quantity::strain)
       throw InputError({file},
                        "its first channel is strain; expected displacement, velocity or acceleration");
+    refuse_driven(file, measured, request.format.window.has_value());
     try {
+      prepared.record = complete_part(motion_of(measured), prepared.record.remarks);
+      if (!request.format.window)
+        prepared.record = from_release(prepared.record, measured, prepared.record.remarks);
+      const Record& record = prepared.record;
       Results results =
           report(settings, record, request.file.filename().string(), study_backbone(record, settings));
       add_preparation(results, prepared, request.format);

@@ -50,13 +50,7 @@ int run_track(const Values& values) {
     const std::string file = request.file.string();
     const std::vector<Eigen::Index> outputs = output_channels(record);
     if (outputs.empty()) throw InputError({file}, "holds forces only; expected a channel of motion");
-    if (is_driven(record) && !is_struck(record) &&
-        driven_or_decaying(file, record, request.format.window.has_value(), {}).driven)
-      throw InputError(
-          {file},
-          "an input is measured that drives the motion, and what this command follows would be the "
-          "input's; expected a free decay or random vibration. 'beamid modal' and 'beamid identify' "
-          "use the input, and identify shows what follows the size of the motion");
+    refuse_driven(file, record, request.format.window.has_value());
     const Eigen::Index row = outputs.front();
     const Channel& channel = record.channels[static_cast<std::size_t>(row)];
     try {

@@ -1,9 +1,11 @@
 #include "experiments/modal/ambient_pair.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include <Eigen/Dense>
@@ -26,6 +28,64 @@ enum Entry { f1, f2, zeta1, zeta2, l11, l22, real21, imaginary21, noise, shapes 
 struct TwoStarts {
   double frequency_hz[2], damping_ratio, density;
   MatrixXd shapes;  // of unit length (p x 2)
+};
+
+using Small = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, 0, most_channels, most_channels>;
+using Moved = Eigen::Matrix<Complex, Eigen::Dynamic, 2, 0, most_channels, 2>;
+using Column = Eigen::Matrix<Complex, Eigen::Dynamic, 1, 0, most_channels, 1>;
+
+/// (i b)^m.
+Complex b_to_the(int power, double b) {
+  return power == 0 ? Complex(1.0, 0.0) : power == 1 ? Complex(0.0, b) : Complex(-b * b, 0.0);
+}
+
+/// x conj(y).
+Complex product(Complex x, Complex y) {
+  return {x.real() * y.real() + x.imag() * y.imag(), x.imag() * y.real() - x.real() * y.imag()};
+}
+
+/// The entries of a Hermitian matrix as p^2 real numbers: their product is the trace of two such matrices.
+template <typename Row, typename Entries>
+void put_entries(Row& into, Index p, const Entries& entry) {
+  Index place = 0;
+  for (Index c = 0; c < p; ++c) {
+    into[place++] = entry(c, c).real();
+    for (Index r = c + 1; r < p; ++r) {
+      const Complex below = std::numbers::sqrt2 * entry(r, c);
+      into[place++] = below.real();
+      into[place++] = below.imag();
+    }
+  }
+}
+
+/// E = M M^H + S_e I = L L^H of a line.
+class WhitenedLine {
+ public:
+  WhitenedLine(const Moved& moved, double noise_density) {
+    Small covariance = moved.lazyProduct(moved.adjoint());
+    covariance.diagonal().array() += noise_density;
+    const Eigen::LLT<Small> factor(covariance);
+    positive_ = factor.info() == Eigen::Success;
+    const Small& lower = factor.matrixLLT();
+    const Index p = lower.rows();
+    whitener_ = Small::Zero(p, p);
+    for (Index c = 0; c < p; ++c) {  // by columns; the diagonal is real
+      whitener_(c, c) = 1.0 / lower(c, c).real();
+      for (Index r = c + 1; r < p; ++r) {
+        Complex sum = 0.0;
+        for (Index j = c; j < r; ++j) sum += lower(r, j) * whitener_(j, c);
+        whitener_(r, c) = -sum * (1.0 / lower(r, r).real());
+      }
+    }
+  }
+
+  bool is_positive() const { return positive_; }
+  double log_determinant() const { return -2.0 * whitener_.diagonal().real().array().log().sum(); }
+  const Small& whitener() const { return whitener_; }  ///< L^-1
+
+ private:
+  Small whitener_;
+  bool positive_;
 };
 
 class PairLikelihood {
@@ -71,88 +131,67 @@ class PairLikelihood {
     return (start_.shapes.col(i) + across_[i] * at.segment(shapes + i * more, more)).normalized();
   }
 
-  /// E_k of all lines.
-  std::vector<MatrixXcd> covariances(const VectorXd& at) const {
-    MatrixXcd factor = MatrixXcd::Zero(2, 2);
-    factor(0, 0) = std::exp(at[l11]), factor(1, 1) = std::exp(at[l22]);
-    factor(1, 0) = Complex(at[real21], at[imaginary21]) * std::sqrt(start_.density);
-    MatrixXd shapes(coefficients_.rows(), 2);
-    shapes << shape(at, 0), shape(at, 1);
-    const double se = std::exp(at[noise]);
-    std::vector<MatrixXcd> found;
-    found.reserve(static_cast<std::size_t>(frequency_hz_.size()));
-    for (const double f : frequency_hz_) {
-      Eigen::Vector2cd h;
-      for (int i = 0; i < 2; ++i) {
-        const double b = f / frequency(at, i);
-        h[i] = std::pow(Complex(0.0, b), power_) / Complex(1.0 - b * b, 2.0 * std::exp(at[zeta1 + i]) * b);
-      }
-      const MatrixXcd moved = shapes * h.asDiagonal() * factor;
-      found.push_back(moved * moved.adjoint());
-      found.back().diagonal().array() += se;
-    }
-    return found;
-  }
-
   double operator()(const VectorXd& at) const {
     if (!(frequency(at, 0) > 0.0 && frequency(at, 1) > 0.0)) return std::numeric_limits<double>::infinity();
-    const std::vector<MatrixXcd> covariance = covariances(at);
+    const PairMotion motion(*this, at);
     double sum = own_noise(at);
     for (Index k = 0; k < frequency_hz_.size(); ++k) {
-      const Eigen::LLT<MatrixXcd> factor(covariance[static_cast<std::size_t>(k)]);
-      if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
-      sum += 2.0 * factor.matrixLLT().diagonal().real().array().log().sum() +
-             factor.matrixL().solve(coefficients_.col(k)).squaredNorm();
+      const WhitenedLine line(motion.moved(frequency_hz_[k]), motion.noise_density);
+      if (!line.is_positive()) return std::numeric_limits<double>::infinity();
+      sum += line.log_determinant() + (line.whitener() * coefficients_.col(k)).squaredNorm();
     }
     return sum;
   }
 
-  /// Slope of -ln p and Fisher's information, by differences of E_k.
+  /// Slope of -ln p and Fisher's information tr(E^-1 dE_i E^-1 dE_j): with E = L L^H, S_j = L^-1 dE_j L^-H is
+  /// Hermitian, and that trace is the product of the entries of S_i and S_j, as real numbers.
   void score(const VectorXd& at, VectorXd& slope, MatrixXd& information) const {
-    constexpr double h = 1e-4;
-    const Index q = size(), n = frequency_hz_.size();
-    const std::vector<MatrixXcd> here = covariances(at);
-    std::vector<std::vector<MatrixXcd>> change;
-    for (Index j = 0; j < q; ++j) {
-      VectorXd up = at, down = at;
-      up[j] += h, down[j] -= h;
-      change.push_back(covariances(up));
-      const std::vector<MatrixXcd> below = covariances(down);
-      for (std::size_t k = 0; k < below.size(); ++k)
-        change.back()[k] = (change.back()[k] - below[k]) / (2.0 * h);
-    }
+    const Index q = size(), n = frequency_hz_.size(), p = coefficients_.rows();
+    const PairMotion motion(*this, at);
     slope = VectorXd::Zero(q);
-    information = MatrixXd::Zero(q, q);
+    MatrixXd entries(q, p * p * n);
+    std::vector<Moved> changes(static_cast<std::size_t>(q));
     for (Index k = 0; k < n; ++k) {
-      const auto line = static_cast<std::size_t>(k);
-      const Eigen::LLT<MatrixXcd> factor(here[line]);
-      const Eigen::VectorXcd weighed_line = factor.solve(coefficients_.col(k));
-      std::vector<MatrixXcd> scaled;
+      const double f = frequency_hz_[k];
+      const WhitenedLine line(motion.moved(f), motion.noise_density);
+      const Small& whitener = line.whitener();
+      const Moved moved = whitener * motion.moved(f);
+      const Column left = whitener * coefficients_.col(k);
+      motion.change(f, changes);
+      const Eigen::RowVector2cd moved_left = left.adjoint() * moved;
       for (Index j = 0; j < q; ++j) {
-        const MatrixXcd& e = change[static_cast<std::size_t>(j)][line];
-        scaled.push_back(factor.solve(e));
-        slope[j] += scaled.back().trace().real() - weighed_line.dot(e * weighed_line).real();
+        auto own = entries.row(j).segment(p * p * k, p * p);
+        if (j == noise) {
+          const Small scaled = motion.noise_density * whitener * whitener.adjoint();
+          put_entries(own, p, [&](Index r, Index c) { return scaled(r, c); });
+          slope[j] +=
+              scaled.trace().real() - (whitener.adjoint() * left).squaredNorm() * motion.noise_density;
+          continue;
+        }
+        const Moved change = whitener * changes[static_cast<std::size_t>(j)];
+        put_entries(own, p, [&](Index r, Index c) {
+          return product(change(r, 0), moved(c, 0)) + product(change(r, 1), moved(c, 1)) +
+                 product(moved(r, 0), change(c, 0)) + product(moved(r, 1), change(c, 1));
+        });
+        const Eigen::RowVector2cd change_left = left.adjoint() * change;
+        slope[j] += 2.0 * (moved.conjugate().cwiseProduct(change).sum().real() -
+                           moved_left.conjugate().cwiseProduct(change_left).sum().real());
       }
-      for (Index i = 0; i < q; ++i)
-        for (Index j = 0; j <= i; ++j)
-          information(i, j) += scaled[static_cast<std::size_t>(i)]
-                                   .cwiseProduct(scaled[static_cast<std::size_t>(j)].transpose())
-                                   .sum()
-                                   .real();
     }
+    information = entries * entries.transpose();
     const double weighed = static_cast<double>(channels_beyond_ * n);
     slope[noise] +=
         weighed - beyond_ / std::exp(at[noise]) + (at[noise] - std::log(one_.noise_density)) / 16.0;
     information(noise, noise) += weighed + 1.0 / 16.0;
-    information = MatrixXd(information.selfadjointView<Eigen::Lower>());
   }
 
   VectorXd misfit(const VectorXd& at) const {
-    const std::vector<MatrixXcd> covariance = covariances(at);
+    const PairMotion motion(*this, at);
     VectorXd found(frequency_hz_.size());
-    for (Index k = 0; k < found.size(); ++k)
-      found[k] =
-          covariance[static_cast<std::size_t>(k)].llt().matrixL().solve(coefficients_.col(k)).squaredNorm();
+    for (Index k = 0; k < found.size(); ++k) {
+      const WhitenedLine line(motion.moved(frequency_hz_[k]), motion.noise_density);
+      found[k] = (line.whitener() * coefficients_.col(k)).squaredNorm();
+    }
     return found;
   }
 
@@ -162,6 +201,65 @@ class PairLikelihood {
     return static_cast<double>(channels_beyond_ * frequency_hz_.size()) * at[noise] +
            beyond_ / std::exp(at[noise]) + std::pow(at[noise] - std::log(one_.noise_density), 2) / 32.0;
   }
+
+  /// M = Phi diag(h) L of the lines, and its slopes: E = M M^H + S_e I.
+  struct PairMotion {
+    PairMotion(const PairLikelihood& likelihood, const VectorXd& at)
+        : of(likelihood), noise_density(std::exp(at[noise])), shapes(likelihood.coefficients_.rows(), 2) {
+      for (int i = 0; i < 2; ++i) {
+        frequency_hz[i] = of.frequency(at, i);
+        damping_ratio[i] = std::exp(at[zeta1 + i]);
+        shapes.col(i) = of.shape(at, i);
+        // s = v / |v|: ds = (dv - s (s^T dv)) / |v|
+        const Index more = shapes.rows() - 1;
+        const VectorXd v =
+            of.start_.shapes.col(i) + of.across_[i] * at.segment(Entry::shapes + i * more, more);
+        across[i] = (of.across_[i] - shapes.col(i) * (shapes.col(i).transpose() * of.across_[i])) / v.norm();
+      }
+      forces << std::exp(at[l11]), 0.0, Complex(at[real21], at[imaginary21]) * std::sqrt(of.start_.density),
+          std::exp(at[l22]);
+    }
+
+    /// h of mode i, its slope to its unknown frequency and to ln zeta.
+    std::array<Complex, 3> response(double f, int i) const {
+      const double b = f / frequency_hz[i], z = damping_ratio[i];
+      const Complex numerator = b_to_the(of.power_, b), pole = 1.0 / Complex(1.0 - b * b, 2.0 * z * b);
+      const Complex h = numerator * pole;
+      // d ln h / d b = m / b - (-2 b + 2 i z) / (1 - b^2 + 2 i z b)
+      const Complex by_b = h * (of.power_ / b - Complex(-2.0 * b, 2.0 * z) * pole);
+      return {h, by_b * (-b / frequency_hz[i] * of.unit_hz()), -h * Complex(0.0, 2.0 * z * b) * pole};
+    }
+
+    Moved moved(double f) const {
+      const Eigen::Vector2cd h(response(f, 0)[0], response(f, 1)[0]);
+      return shapes * (h.asDiagonal() * forces);
+    }
+
+    /// dM of each unknown but S_e.
+    void change(double f, std::vector<Moved>& changes) const {
+      const double unit = std::sqrt(of.start_.density);
+      std::array<Complex, 3> h[2] = {response(f, 0), response(f, 1)};
+      for (int i = 0; i < 2; ++i) {
+        changes[static_cast<std::size_t>(f1 + i)] = shapes.col(i) * (h[i][1] * forces.row(i));
+        changes[static_cast<std::size_t>(zeta1 + i)] = shapes.col(i) * (h[i][2] * forces.row(i));
+        Eigen::RowVector2cd own = Eigen::RowVector2cd::Zero();
+        own[i] = h[i][0] * forces(i, i);
+        changes[static_cast<std::size_t>(l11 + i)] = shapes.col(i) * own;
+        for (Index j = 0; j < across[i].cols(); ++j)
+          changes[static_cast<std::size_t>(Entry::shapes + i * across[i].cols() + j)] =
+              across[i].col(j) * (h[i][0] * forces.row(i));
+      }
+      const Eigen::RowVector2cd other(h[1][0] * unit, 0.0);
+      changes[real21] = shapes.col(1) * other;
+      changes[imaginary21] = shapes.col(1) * (Complex(0.0, 1.0) * other);
+    }
+
+    const PairLikelihood& of;
+    double noise_density, frequency_hz[2], damping_ratio[2];
+    MatrixXd shapes;     // (p x 2)
+    MatrixXd across[2];  // slopes of the shapes (p x p - 1)
+    Eigen::Matrix2cd forces;
+  };
 
   const MatrixXcd& coefficients_;
   const VectorXd& frequency_hz_;

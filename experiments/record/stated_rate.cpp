@@ -210,6 +210,14 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
   return contradicts ? -1.0 : found;
 }
 
+/// A digit, and a word: two letters one after another.
+bool can_state_a_rate(std::string_view line) {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  return std::ranges::any_of(line, [](char c) { return c >= '0' && c <= '9'; }) &&
+         std::ranges::adjacent_find(line, [&](char a, char b) { return is_letter(a) && is_letter(b); }) !=
+             line.end();
+}
+
 }  // namespace
 
 std::optional<double> stated_rate(std::string_view lines, char decimal) {
@@ -224,7 +232,7 @@ std::optional<double> stated_rate(std::string_view lines, char decimal) {
     const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
     static const std::regex channels(R"(, *c[0-9]+ ?- ?c?[0-9]+)");  // "INTERVALO DE MUESTREO, C1-C6 (s)"
-    if (line.size() > longest) continue;  // a regular expression would recurse per letter
+    if (line.size() > longest || !can_state_a_rate(line)) continue;  // one would recurse per letter
     const auto rate = rate_of_line(std::regex_replace(std::string(line), channels, ""), decimal);
     constexpr double tolerated = 0.02;
     if (rate && *rate < 0.0) return {};

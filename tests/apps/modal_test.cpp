@@ -270,6 +270,17 @@ std::string event(double first_hz, double size, std::uint64_t seed) {
   return text.str();
 }
 
+TEST(Modal, OfADrivenRecordIsForModalAndNotForCommandsOfADecay) {
+  Workplace place;
+  place.write("event.csv", event(3.0, 1.0, 1));
+  EXPECT_EQ(place.run("modal event.csv").code, 0);
+  for (const char* command : {"track", "backbone"}) {
+    const Outcome outcome = place.run(std::string(command) + " event.csv");
+    EXPECT_EQ(outcome.code, 2) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("an input is measured that drives the motion")) << command;
+  }
+}
+
 // Oracle: what the records were made of.
 TEST(Modal, FollowsTheFirstModeOverThePeakAcceleration) {
   Workplace place;

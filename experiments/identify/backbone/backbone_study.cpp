@@ -166,6 +166,19 @@ BackboneStudy study_backbone(const Record& record, const BackboneSettings& setti
   return study;
 }
 
+double BackboneStudy::first_amplitude() const {
+  constexpr double fallen = 1.0 / 7.0, determined = 0.05;
+  const bool at_rest = law() && smallest() < fallen * largest() &&
+                       quantile_95 * backbone.secant_deviation(0.0) < determined * backbone.secant(0.0);
+  return at_rest ? 0.0 : smallest();
+}
+
+double BackboneStudy::ratio_deviation(double x) const {
+  const Eigen::VectorXd slope = backbone.curve.shape(x) / backbone.secant(x) -
+                                backbone.curve.shape(first_amplitude()) / first_stiffness();
+  return std::sqrt(std::max(0.0, slope.dot(backbone.covariance * slope)));
+}
+
 std::string backbone_verdict(const BackboneStudy& study) {
   const auto& w = study.windows;
   const std::string span = fmt::format("from {:.3g} to {:.3g} mm", 1e3 * w.first_amplitude,
@@ -198,9 +211,8 @@ std::string backbone_verdict(const BackboneStudy& study) {
   std::string text = fmt::format(
       "{} {}: {}; at {:.3g} mm the backbone's secant is {:.1f} % of that at {}, known within {:.2g} %.",
       study.spring == SpringKind::softening ? "Softening" : "Hardening", span, change, 1e3 * x,
-      100 * study.backbone.secant(x) / study.first_stiffness(),
-      study.law() ? "rest" : "the smallest amplitude",
-      100 * quantile_95 * study.backbone.secant_deviation(x) / study.backbone.secant(x));
+      100 * study.backbone.secant(x) / study.first_stiffness(), study.first_place(),
+      100 * quantile_95 * study.ratio_deviation(x));
   const RecordFit* const between = study.record.find("between");
   const std::string mu = between ? fmt::format("{:.3f} +- {:.3f} of Masing's loop", between->masing,
                                                quantile_95 * between->masing_deviation)

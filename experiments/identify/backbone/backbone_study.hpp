@@ -36,9 +36,14 @@ struct BackboneStudy {
   /// [m].
   double largest() const;
   double smallest() const { return windows.last_amplitude; }
-  /// Stiffness against which the backbone's secants are held: F / x at the origin by the law,
-  /// else at the smallest amplitude.
-  double first_stiffness() const { return backbone.secant(law() ? 0 : smallest()); }
+  /// Amplitude of the stiffness against which the backbone's secants are held [m]: zero by a law that
+  /// determines it there within 5 %, and whose record falls to a seventh of its largest amplitude (below that
+  /// a spring of the third power changes by 2 % of what it does in all); else the smallest.
+  double first_amplitude() const;
+  std::string first_place() const { return first_amplitude() > 0.0 ? "the smallest amplitude" : "rest"; }
+  double first_stiffness() const { return backbone.secant(first_amplitude()); }  ///< F / x there
+  /// Of ln(secant at x over first_stiffness()).
+  double ratio_deviation(double x) const;
   /// BIC of `linear` over that of the law: below zero where a line says as much of the record.
   double linear_bic() const;
   /// What a cycle of the amplitude A dissipates by the law [J]; NaN without one.

@@ -11,6 +11,7 @@
 #include "experiments/modal/study/record_kind.hpp"
 #include "experiments/signal/spectrum.hpp"
 #include "experiments/signal/toolbox.hpp"
+#include "experiments/text/input_error.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -360,6 +361,15 @@ DrivenOrDecaying driven_or_decaying(const std::string& name, const Record& recor
     } catch (const std::invalid_argument&) {  // no decay
     }
   return found;
+}
+
+void refuse_driven(const std::string& file, const Record& record, bool windowed) {
+  if (!is_driven(record) || is_struck(record) || !driven_or_decaying(file, record, windowed, {}).driven)
+    return;
+  throw InputError({file},
+                   "an input is measured that drives the motion, and what this command follows would be the "
+                   "input's; expected a free decay or random vibration. 'beamid modal' and 'beamid identify' "
+                   "use the input, and identify shows what follows the size of the motion");
 }
 
 RecordModes modes_of(const DrivenStudy& study) {

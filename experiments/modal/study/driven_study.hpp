@@ -58,6 +58,10 @@ struct DrivenOrDecaying {
 DrivenOrDecaying driven_or_decaying(const std::string& name, const Record& record, bool windowed,
                                     const ModalStudySettings& settings);
 
+/// For commands that follow a motion of the structure's own.
+/// @throws InputError where a measured input drives the motion.
+void refuse_driven(const std::string& file, const Record& record, bool windowed);
+
 /// The same as modes of the motion alone, for what takes modes of any record. There is no target.
 RecordModes modes_of(const DrivenStudy& study);
 

@@ -65,7 +65,7 @@ Table backbone_table(const BackboneStudy& study) {
   table.note = fmt::format(
       "F by {}. Secants: what K(A) A, taken for the curve, is off; windows: their describing function "
       "inverted. G/Gmax: F/x over {:.5g} N/m, its value at {}.",
-      study.law() ? "the whole record" : "the windows", k0, study.law() ? "rest" : "the smallest amplitude");
+      study.law() ? "the whole record" : "the windows", k0, study.first_place());
   return table;
 }
 
@@ -246,9 +246,7 @@ Figure backbone_figure(const BackboneStudy& study, double mass) {
       .line("backbone", 1e3 * x, force, Colour::blue)
       .dashed("secants K(A) A", 1e3 * x, naive, Colour::vermillion);
   Panel normalised{
-      "stiffness over its value at " + std::string(study.law() ? "rest" : "the smallest amplitude"),
-      {"amplitude [mm]", true},
-      {"G/Gmax"}};
+      "stiffness over its value at " + study.first_place(), {"amplitude [mm]", true}, {"G/Gmax"}};
   normalised.line("backbone", 1e3 * x, secant / k0, Colour::blue);
   Panel ratios{"energy of a cycle over 2 pi F(A) A", {"amplitude [mm]", true}, {"D [%]"}};
   if (study.law()) ratios.line("law", 1e3 * x, 100 * energy, Colour::blue);
