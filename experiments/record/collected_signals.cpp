@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -77,6 +78,36 @@ void CollectedSignals::add_matrix(const std::function<std::string(std::size_t, b
   }
 }
 
+void CollectedSignals::set_text(const std::string& name, const std::string& text) {
+  const std::string last = folded(last_part(name));
+  if (!stated_unit(text)) return;
+  const std::string path = name.substr(0, name.size() - last.size());
+  if (last == "unit" || last == "units")
+    unit_texts_.emplace_back(path, text);
+  else if (const std::size_t end = last.rfind("_unit"); end != std::string::npos && end + 6 >= last.size())
+    unit_texts_.emplace_back(name.substr(0, path.size() + end), text);
+}
+
+void CollectedSignals::take_units() {
+  for (const auto& [of, unit] : unit_texts_) {
+    const bool is_path = of.empty() || of.ends_with('.');
+    const auto variable = [](const std::string& name) {
+      return name.substr(0, name.find('(', name.rfind('.') + 1));
+    };
+    std::set<std::string> variables;
+    const auto belongs = [&](const Signal& signal) {
+      const std::string own = variable(signal.name);
+      return !time_name(own).time &&
+             (is_path ? own.starts_with(of) && own.find('.', of.size()) == std::string::npos : own == of);
+    };
+    for (const Signal& signal : signals_)
+      if (belongs(signal)) variables.insert(variable(signal.name));
+    if (variables.size() != 1) continue;  // of which
+    for (Signal& signal : signals_)
+      if (belongs(signal) && signal.unit.empty()) signal.unit = unit;
+  }
+}
+
 bool CollectedSignals::set(const std::string& name, double value) {
   const std::string last = last_part(name);
   const SamplingName what = sampling_name(last);
@@ -86,7 +117,9 @@ bool CollectedSignals::set(const std::string& name, double value) {
   const double stated = what == SamplingName::rate ? 1 / value : value;
   constexpr double longest = 0.5;  // [s]; more is one of milliseconds
   if (what == SamplingName::interval && stated > longest) return true;
-  if (interval_ > 0 && std::abs(stated - interval_) > 1e-9 * interval_)
+  const auto may_be_another = [](const std::string& other) { return folded(last_part(other)) == "rate"; };
+  if (interval_ > 0 && may_be_another(name)) return true;  // of a shaft, beside "sr"
+  if (interval_ > 0 && !may_be_another(interval_name_) && std::abs(stated - interval_) > 1e-9 * interval_)
     throw InputError({file_}, fmt::format("{} means an interval of {} s beside one of {} s; expected one",
                                           name, stated, interval_));
   set_interval(name, stated);

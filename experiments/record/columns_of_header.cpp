@@ -157,6 +157,10 @@ class Recognition {
           return other.ends_with("(txt)");  // kinds of values: text, numbers
         }))
       found->kind = RecognisedColumn::Kind::other;
+    if (holds_bits(name, table.columns[index])) found->kind = RecognisedColumn::Kind::other;
+    if (found->kind == RecognisedColumn::Kind::time && !found->states_unit && swings(table.columns[index]) &&
+        name.find_first_of("_ ") != std::string::npos)
+      found->kind = RecognisedColumn::Kind::signal, found->quantity = Quantity::acceleration;
     if ((name == "U" || name == "u") && named("n") && named("e"))  // up
       found->quantity = Quantity::acceleration, found->states_quantity = false;
     const auto add = [&](std::string& list) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -51,6 +52,13 @@ class CollectedSignals {
   /// @returns whether it is one of them.
   bool set(const std::string& name, double value);
 
+  /// A text beside the numbers: a unit where its name says so ("units", "acc_unit"), else of no use. That of
+  /// "data.units" is of the one other variable of `data` that is no time.
+  void set_text(const std::string& name, const std::string& text);
+
+  /// Gives the signals that state no unit those of the texts. To be called behind all numbers.
+  void take_units();
+
   /// What set() made of a number. @param interval [s]
   void set_interval(std::string name, double interval) {
     interval_name_ = std::move(name), interval_ = interval;
@@ -78,6 +86,7 @@ class CollectedSignals {
   std::size_t most_numbers_;
   double announced_ = 0.0;
   std::vector<Signal> signals_;
+  std::vector<std::pair<std::string, std::string>> unit_texts_;  ///< of what, unit
   double interval_ = 0.0;
   std::string interval_name_;
 };

@@ -413,4 +413,10 @@ bool names_columns(const std::vector<std::string_view>& fields) {
   return named;
 }
 
+bool holds_bits(const std::string& name, const std::vector<double>& values) {
+  static const std::regex form("(d|di|dio|din|bit|digital|logic|ttl)[ _]?[0-9]+");
+  return std::regex_match(folded(name), form) &&
+         std::ranges::all_of(values, [](double value) { return value == 0.0 || value == 1.0; });
+}
+
 }  // namespace beamid::experiments

@@ -214,6 +214,12 @@ std::string printed_like(const Stamp& stamp) {
   return printed;
 }
 
+bool swings(const std::vector<double>& values) {
+  std::size_t falls = 0;
+  for (std::size_t k = 1; k < values.size(); ++k) falls += values[k] < values[k - 1] ? 1 : 0;
+  return 4 * falls > values.size();
+}
+
 bool counts_rows(const std::vector<double>& values) {
   for (std::size_t k = 1; k < values.size(); ++k)
     if (values[k] != values[k - 1] + 1.0) return false;

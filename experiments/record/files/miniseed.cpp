@@ -1,4 +1,5 @@
-// MiniSEED, the format of seismological networks, through libmseed [miniseed].
+// MiniSEED, the format of seismological networks, through libmseed [miniseed], and the text of their
+// services.
 #include <fmt/format.h>
 #include <libmseed.h>
 
@@ -6,12 +7,19 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
+#include <regex>
+#include <sstream>
 
 #include <needed_library.hpp>
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
+#include "experiments/record/stamps.hpp"
+#include "experiments/record/units.hpp"
+#include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
@@ -22,13 +30,16 @@ BEAMID_NEEDED(libmseed, ms_readtraces);
 BEAMID_NEEDED(libmseed, ms_errorstr);
 BEAMID_NEEDED(libmseed, mst_convertsamples);
 
-/// "acceleration IU.ANMO.00.HNZ": the second letter of a channel's code says what its instrument measures.
+/// "acceleration ": the second letter of a channel's code says what its instrument measures.
+const char* quantity_of(std::string_view channel) {
+  const char instrument = channel.size() < 2 ? '\0' : channel[1];
+  return instrument == 'N' ? "acceleration " : instrument == 'H' || instrument == 'L' ? "velocity " : "";
+}
+
+/// "acceleration IU.ANMO.00.HNZ".
 std::string name_of_trace(const MSTrace& trace) {
-  const char instrument = trace.channel[0] == '\0' ? '\0' : trace.channel[1];
-  const char* const quantity = instrument == 'N'                        ? "acceleration "
-                               : instrument == 'H' || instrument == 'L' ? "velocity "
-                                                                        : "";
-  return fmt::format("{}{}.{}.{}.{}", quantity, trace.network, trace.station, trace.location, trace.channel);
+  return fmt::format("{}{}.{}.{}.{}", quantity_of(trace.channel), trace.network, trace.station,
+                     trace.location, trace.channel);
 }
 
 /// Every channel on one grid of instants; what is missing between its traces is NaN.
@@ -77,9 +88,96 @@ void collect_traces(CollectedSignals& signals) {
   signals.set("sample_rate", rate);
 }
 
+constexpr std::string_view text_beginning = "TIMESERIES ";
+
+/// Traces of a text, each behind a line such as
+/// "TIMESERIES IU_ANMO_00_BHZ_M, 3600 samples, 20 sps, 2010-02-27T06:30:00.069538, SLIST, FLOAT, M/S":
+/// numbers, or instant and number in a line (TSPAIR).
+void collect_text(std::istream& lines, CollectedSignals& signals) {
+  static const std::regex form(
+      "TIMESERIES ([^,]*), *([0-9]{1,9}) samples, *([-+.0-9eE]+) sps, *([^,]*), *(SLIST|TSPAIR), *[^,]*(?:, "
+      "*(.*))?");
+  struct Segment {
+    std::string name, unit;
+    double start = 0.0;
+    std::vector<double> values;
+  };
+  const auto refuse = [&](std::size_t line, const std::string& found, const std::string& expected) {
+    return InputError({signals.file(), line, 0}, found + "; expected " + expected);
+  };
+  std::vector<Segment> segments;
+  double rate = 0.0;
+  bool pairs = false;
+  std::size_t count = 0, number = 0, header = 0;
+  const auto finish = [&] {
+    if (!segments.empty() && segments.back().values.size() != count)
+      throw refuse(header, fmt::format("{} numbers follow", segments.back().values.size()),
+                   fmt::format("{}, as this line states", count));
+  };
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.ends_with('\r')) line.pop_back();
+    if (std::smatch match; line.starts_with(text_beginning)) {
+      finish();
+      const auto stamp = std::regex_match(line, match, form) ? parse_stamp(match[4].str()) : std::nullopt;
+      const double own = stamp ? parse_number(match[3].str()).value : 0.0;
+      if (!(own > 0.0))
+        throw refuse(number, "a trace without its rate or start", "samples, sps and an instant");
+      if (rate > 0.0 && std::abs(own / rate - 1.0) > 1e-4)
+        throw refuse(number, fmt::format("channels at {:g} and {:g} Hz", rate, own), "one rate in a file");
+      rate = own, pairs = match[5] == "TSPAIR", header = number;
+      count = static_cast<std::size_t>(parse_number(match[2].str()).value);
+      signals.announce(match[1], {count});
+      const std::string unit = folded(match[6].str()), name = match[1];
+      const std::size_t end = name.rfind('_'), from = end == 0 ? 0 : name.rfind('_', end - 1);
+      const bool knows = stated_unit(unit).has_value();
+      segments.push_back({(knows || end == std::string::npos || from == std::string::npos
+                               ? ""
+                               : quantity_of(std::string_view(name).substr(from + 1, end - from - 1))) +
+                              name,
+                          knows ? unit : "",
+                          stamp->seconds,
+                          {}});
+      continue;
+    }
+    std::istringstream fields(line);
+    std::string field;
+    if (pairs) fields >> field;
+    while (fields >> field) {
+      const ParsedNumber found = parse_number(field);
+      if (!found.number) throw refuse(number, "'" + field + "'", "a number");
+      segments.back().values.push_back(found.value);
+    }
+  }
+  finish();
+  double start = segments.front().start, last = start;
+  for (const Segment& one : segments) {
+    start = std::min(start, one.start);
+    last = std::max(last, one.start + static_cast<double>(one.values.size()) / rate);
+  }
+  const auto length = static_cast<std::size_t>(std::min((last - start) * rate + 0.5, 1e15));
+  std::map<std::string, std::pair<std::string, std::vector<double>>> channels;
+  for (const Segment& one : segments) {
+    const auto [channel, added] = channels.try_emplace(one.name);
+    if (added) {
+      signals.announce(one.name, {length});
+      channel->second = {one.unit, std::vector<double>(length, std::numeric_limits<double>::quiet_NaN())};
+    }
+    const auto from = static_cast<std::size_t>((one.start - start) * rate + 0.5);
+    for (std::size_t k = 0; k < one.values.size() && from + k < length; ++k)
+      channel->second.second[from + k] = one.values[k];
+  }
+  for (auto& [name, found] : channels) signals.add(name, found.first, std::move(found.second), 9);
+  signals.set("sample_rate", rate);
+}
+
 class MiniSeedReader final : public RecordReader {
  public:
   bool recognises(std::string_view beginning) const override {
+    if (beginning.starts_with(text_beginning) && beginning.find(" sps,") != std::string_view::npos &&
+        (beginning.find("SLIST,") != std::string_view::npos ||
+         beginning.find("TSPAIR,") != std::string_view::npos))
+      return true;
     constexpr std::size_t fixed_header = 48;
     if (beginning.size() < fixed_header) return false;
     for (const char letter : beginning.substr(0, 6))
@@ -91,6 +189,12 @@ class MiniSeedReader final : public RecordReader {
 
   RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const override {
     const std::size_t bytes = count_bytes(file, "a MiniSEED file");
+    std::ifstream stream = open_input(file, "a MiniSEED file");
+    if (stream.peek() == text_beginning.front()) {
+      CollectedSignals signals(file.string(), reading_limits(bytes).numbers);
+      collect_text(stream, signals);
+      return signals.table(format);
+    }
     RecordTable table =
         read_apart(file.string(), "libmseed", reading_limits(bytes), collect_traces).table(format);
     table.remarks.emplace_back("MiniSEED states no unit: its signals are the counts of the file.");
@@ -100,7 +204,8 @@ class MiniSeedReader final : public RecordReader {
 
 const bool miniseed_registered = record_reader_registry().add(
     {"miniseed",
-     "MiniSEED of seismological networks: a signal for each channel, in counts, gaps as missing samples",
+     "MiniSEED of seismological networks and the text of their services (SLIST, TSPAIR): a signal for each "
+     "channel, in counts where no unit is stated, gaps as missing samples",
      "[miniseed]",
      {},
      {},

@@ -2,10 +2,14 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <regex>
+#include <vector>
 
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
@@ -65,14 +69,14 @@ void add_records(RecordTable& table, std::string_view data, const std::string& h
   if (!std::regex_search(header, shape, one)) throw refuse("records in more dimensions");
   std::vector<Field> fields;
   std::size_t length = 0;
-  const std::size_t before = table.columns.size(), rows = std::stoull(shape[1]);
+  const std::size_t rows = std::stoull(shape[1]);
   for (std::sregex_iterator at(header.begin(), header.end(), field), end; at != end; ++at) {
     const std::string kind = (*at)[2];
     if ((*at)[5].length() > 0) throw refuse("records that hold arrays");
     const std::size_t size = std::stoull((*at)[3]) * (kind[1] == 'U' ? 4 : 1);
     if (const auto tick = seconds_per_unit((*at)[4].str()); kind[1] == 'M' && tick) {
       fields.push_back({length, Numbers(kind.substr(0, 1) + "i8"), tick});
-      table.time = before + fields.size() - 1;
+      table.time = fields.size() - 1;
       table.names.push_back((*at)[1]);
       table.precision.push_back(PrintedPrecision::of_digits(15));
     } else if (const Numbers numbers(kind + (*at)[3].str()); numbers.type) {
@@ -86,7 +90,6 @@ void add_records(RecordTable& table, std::string_view data, const std::string& h
   if (fields.empty() || rows == 0 || rows > data.size() / length)
     throw refuse("fewer records of numbers than the header states");
   if (rows * length != data.size()) throw refuse("records of other fields than numbers, texts and instants");
-  if (before > 0 && table.rows() != rows) throw refuse("another length than the arrays before it");
   for (const Field& one_field : fields) {
     std::vector<double>& column = table.columns.emplace_back();
     const auto at = [&](std::size_t row) { return data.data() + row * length + one_field.offset; };
@@ -99,8 +102,7 @@ void add_records(RecordTable& table, std::string_view data, const std::string& h
   }
 }
 
-/// The columns of one array, named `name`, behind those that are there; a number alone states the rate or the
-/// interval.
+/// The columns of one array, named `name`; a number alone states the rate or the interval.
 void add_array(RecordTable& table, const std::string& bytes, const std::string& name) {
   const auto refuse = [&](const std::string& found) {
     return InputError({table.file}, (name.empty() ? "" : "'" + name + "': ") + found +
@@ -158,17 +160,15 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
 
   const char* const data = bytes.data() + start + length;
   const bool lying = rows < width && rows <= 32;  // a row for each channel
-  const std::size_t added = lying ? rows : width, first = table.columns.size();
-  if (first > 0 && rows != table.rows() && !(lying && width == table.rows()))
-    throw refuse("another length than the arrays before it");
-  table.columns.resize(first + added);
-  table.precision.resize(first + added, PrintedPrecision::of_digits(numbers.type->digits));
+  const std::size_t added = lying ? rows : width;
+  table.columns.resize(added);
+  table.precision.resize(added, PrintedPrecision::of_digits(numbers.type->digits));
   for (std::size_t k = 0; k < added && !name.empty(); ++k)
     table.names.push_back(added > 1 ? fmt::format("{}_{}", name, k + 1) : name);
   for (std::size_t row = 0; row < rows; ++row)
     for (std::size_t column = 0; column < width; ++column) {
       const std::size_t at = by_columns ? column * rows + row : row * width + column;
-      table.columns[first + (lying ? row : column)].push_back(numbers.read(data + at * numbers.type->size));
+      table.columns[lying ? row : column].push_back(numbers.read(data + at * numbers.type->size));
     }
 }
 
@@ -208,6 +208,8 @@ void add_archive(RecordTable& table, const std::string& bytes) {
   };
   const std::size_t end = bytes.rfind("PK\x05\x06");  // which says where the directory begins
   std::size_t at = end == std::string::npos ? end : number(end + 16, 4);
+  std::vector<RecordTable> parts;
+  std::map<std::size_t, std::size_t> numbers;  // of each length
   for (; at < bytes.size() && bytes.compare(at, entry.size(), entry) == 0 && at + fixed <= bytes.size();
        at += fixed + number(at + 28, 2) + number(at + 30, 2) + number(at + 32, 2)) {
     const std::string name = bytes.substr(at + fixed, number(at + 28, 2));
@@ -221,9 +223,30 @@ void add_archive(RecordTable& table, const std::string& bytes) {
     const auto* const first = reinterpret_cast<const Bytef*>(content.data());
     if (content.size() != whole || crc32(0, first, static_cast<uInt>(whole)) != number(at + 16, 4))
       throw refuse("'" + name + "' is damaged");
-    add_array(table, content, name.substr(0, name.rfind(".npy")));
+    RecordTable& part = parts.emplace_back();
+    part.file = table.file, part.stated_rate = table.stated_rate;
+    add_array(part, content, name.substr(0, name.rfind(".npy")));
+    table.stated_rate = part.stated_rate;
+    std::ranges::move(part.remarks, std::back_inserter(table.remarks));
+    if (!part.columns.empty()) numbers[part.rows()] += part.rows() * part.columns.size();
   }
-  if (table.columns.empty()) throw refuse("no array");
+  if (numbers.empty()) throw refuse("no array");
+  const std::size_t length =
+      std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first;
+  std::string others;
+  for (RecordTable& part : parts) {
+    if (part.columns.empty()) continue;
+    if (part.rows() != length) {
+      others += fmt::format("{}'{}' ({})", others.empty() ? "" : ", ", part.names.front(), part.rows());
+      continue;
+    }
+    if (part.time && !table.time) table.time = table.columns.size() + *part.time;
+    std::ranges::move(part.columns, std::back_inserter(table.columns));
+    std::ranges::move(part.precision, std::back_inserter(table.precision));
+    std::ranges::move(part.names, std::back_inserter(table.names));
+  }
+  if (!others.empty())
+    table.remarks.push_back(fmt::format("Omitted, as not of {} samples: {}.", length, others));
 }
 
 class NpyReader final : public RecordReader {

@@ -175,6 +175,14 @@ TEST(ColumnsBesideAccelerations, OfNeitherQuantityNorUnitAreOmitted) {
   EXPECT_THAT(scope.channel_names(), ElementsAre("A", "B"));
 }
 
+TEST(DigitalLines, AreNoMotion) {
+  const Record record =
+      recognised("Time (s),Acceleration (m/s2),D0,D1\n" + signal_rows(rows, [](int k, double a) {
+                   return fmt::format("{:.4f},{:.5f},0,{}", 0.0025 * k, a, k % 2);
+                 }));
+  EXPECT_THAT(record.channel_names(), ElementsAre("Acceleration (m/s2)"));
+}
+
 // A second run beside the first, over fewer rows.
 TEST(TwoClocks, AreAQuestionWhereTheirRowsEndApart) {
   const std::string text =

@@ -187,14 +187,16 @@ TEST(RecognisedRecord, ReadsStoredArchivesOfArraysAndRefusesDamagedOnes) {
   };
   std::vector<double> values;
   for (int k = 0; k < 16; ++k) values.push_back(k % 5);
+  add("meta.npy", "(3,)", {1.0, 2.0, 3.0});
   add("acc.npy", "(16,)", values);
   add("fs.npy", "()", {100.0});
-  const std::string whole = bytes + directory + "PK\x05\x06" + number(0, 4) + number(2, 2) + number(2, 2) +
+  const std::string whole = bytes + directory + "PK\x05\x06" + number(0, 4) + number(3, 2) + number(3, 2) +
                             number(directory.size(), 4) + number(bytes.size(), 4) + number(0, 2);
   const TemporaryFile file("record.npz", whole);
   const Record record = read_record(file.path(), {});
   ASSERT_EQ(record.size(), 16);
   EXPECT_EQ(record.channels[0].name, "acc");
+  EXPECT_THAT(record.remarks, testing::Contains("Omitted, as not of 16 samples: 'meta' (3)."));
   EXPECT_NEAR(record.interval(), 0.01, 1e-12);
   for (std::size_t length = 8; length + 22 < whole.size(); length += 7) {
     const TemporaryFile cut("cut.npz", whole.substr(0, length));

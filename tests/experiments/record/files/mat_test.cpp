@@ -1,5 +1,6 @@
 // MATLAB files of both levels: what is read, what is refused.
 // Oracles: the numbers written into the files, by hand from the formats' descriptions or by the libraries.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <matio.h>
@@ -118,6 +119,86 @@ TEST(MatReader, RefusesARateThatContradictsTheTimes) {
   RecordFormat stated;
   stated.sampling_rate = 250;
   EXPECT_DOUBLE_EQ(read_record(made.path(), stated).interval(), 0.004);
+}
+
+void write_text(mat_t* file, const char* name, std::string text) {
+  std::size_t size[2] = {1, text.size()};
+  matvar_t* const variable = Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, 2, size, text.data(), 0);
+  Mat_VarWrite(file, variable, MAT_COMPRESSION_NONE);
+  Mat_VarFree(variable);
+}
+
+// Oracle: what was written. A unit beside the only signal is its own; of two signals it is nobody's, unless
+// its name says whose.
+TEST(MatReader, TakesTheUnitsThatStandBesideTheSignals) {
+  for (const bool alone : {true, false}) {
+    const TemporaryFile made("units.mat", "");
+    mat_t* const file = Mat_CreateVer(made.path().c_str(), nullptr, MAT_FT_MAT5);
+    write_variable(file, "fs", 1, 1, {100.0});
+    write_variable(file, "acc", written_samples, 1, values_of(first_signal));
+    if (!alone) write_variable(file, "hammer", written_samples, 1, values_of(second_signal));
+    write_text(file, alone ? "units" : "hammer_unit", alone ? "g" : "kN");
+    if (!alone) write_text(file, "unit", "g");
+    Mat_Close(file);
+    const RecordTable table = read_table(made.path(), {});
+    EXPECT_THAT(table.units, testing::ElementsAreArray(alone ? std::vector<std::string>{"g"}
+                                                             : std::vector<std::string>{"", "kN"}));
+  }
+}
+
+// CWRU's names end in "time", MFPT's files have a rate beside that of the samples.
+TEST(MatReader, ReadsBearingData) {
+  const TemporaryFile made("bearing.mat", "");
+  mat_t* const file = Mat_CreateVer(made.path().c_str(), nullptr, MAT_FT_MAT5);
+  write_variable(file, "sr", 1, 1, {100.0});
+  write_variable(file, "rate", 1, 1, {25.0});
+  write_variable(file, "X097_DE_time", written_samples, 1, values_of(second_signal));
+  Mat_Close(file);
+  const Record record = read_record(made.path());
+  EXPECT_DOUBLE_EQ(record.interval(), 0.01);
+  ASSERT_EQ(record.channels.size(), 1u);
+  EXPECT_EQ(record.channels[0].name, "X097_DE_time");
+}
+
+// Oracle: the format's description: type, rows, columns, imaginary part, length of the name; then both.
+TEST(MatReader, ReadsLevelFour) {
+  std::string bytes;
+  const auto put = [&](const auto& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  const auto matrix = [&](std::string name, std::int32_t rows, const std::vector<double>& values) {
+    name += '\0';
+    for (const std::int32_t one : {0, rows, 1, 0, static_cast<int>(name.size())}) put(one);
+    bytes += name;
+    for (const double value : values) put(value);
+  };
+  matrix("dt", 1, {0.01});
+  matrix("acceleration_g", written_samples, values_of(first_signal));
+  matrix("hammer", written_samples, values_of(second_signal));
+  const TemporaryFile file("level4.mat", bytes);
+  RecordFormat format = mat_channels();
+  format.channels[1].name = "hammer";
+  expect_both(read_record(file.path(), format), 1e-13);
+}
+
+// Oracle: what Octave's save writes of these (its manual, "Simple File I/O").
+TEST(OctaveText, IsReadWithItsRateAndUnits) {
+  std::string text =
+      "# Created by Octave 8.4.0, Mon Nov 30 12:00:00 2026 UTC <u@h>\n# name: fs\n# type: scalar\n100\n\n\n";
+  text += fmt::format("# name: acc\n# type: matrix\n# rows: {}\n# columns: 2\n",
+                      static_cast<int>(written_samples));
+  const std::vector<double> first = values_of(first_signal), second = values_of(second_signal);
+  for (std::size_t k = 0; k < first.size(); ++k)
+    text += fmt::format(" {:.17g} {:.17g}\n", first[k], second[k]);
+  text += "\n\n# name: acc_unit\n# type: string\n# elements: 1\n# length: 1\ng\n\n\n";
+  const TemporaryFile file("acc.txt", text);
+  const RecordTable table = read_table(file.path(), {});
+  EXPECT_THAT(table.names, testing::ElementsAre("acc(:,1)", "acc(:,2)"));
+  EXPECT_THAT(table.units, testing::ElementsAre("g", "g"));
+  EXPECT_EQ(table.columns[1], second);
+  EXPECT_DOUBLE_EQ(read_record(file.path()).interval(), 0.01);
+  const TemporaryFile cut("cut.txt", text.substr(0, 400));
+  EXPECT_THAT(input_error_of(cut, [&] { read_table(cut.path(), {}); }), HasSubstr("'acc' ends in row"));
 }
 
 TEST(MatReader, ReadsOrRefusesDamagedFiles) {

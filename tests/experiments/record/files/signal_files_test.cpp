@@ -145,5 +145,26 @@ TEST(SignalFiles, OfOtherKindsAreNamed) {
   }
 }
 
+// Oracle: what was written. Both traces stood in one series; the second one begins a sample later.
+TEST(TextOfSeismologicalServices, HoldsSeveralTraces) {
+  std::string text =
+      "TIMESERIES XX_ABC__HHZ_D, 40 samples, 100 sps, 2024-03-01T10:00:00.000000, SLIST, FLOAT, M/S\n";
+  for (int k = 0; k < 40; ++k) text += fmt::format("{:.6f}{}", std::cos(0.3 * k), k % 6 == 5 ? "\n" : "  ");
+  text +=
+      "\nTIMESERIES XX_ABC__HNZ_D, 39 samples, 100 sps, 2024-03-01T10:00:00.010000, TSPAIR, FLOAT, Counts\n";
+  for (int k = 1; k < 40; ++k) text += fmt::format("2024-03-01T10:00:00.{:02d}0000  {}\n", k, 7 * k % 11);
+  const TemporaryFile file("traces.txt", text);
+  const RecordTable table = read_table(file.path(), {});
+  EXPECT_THAT(table.names, testing::ElementsAre("XX_ABC__HHZ_D", "acceleration XX_ABC__HNZ_D"));
+  EXPECT_THAT(table.units, testing::ElementsAre("m/s", ""));
+  ASSERT_EQ(table.rows(), 40u);
+  EXPECT_NEAR(table.columns[0][1], std::cos(0.3), 1e-6);
+  EXPECT_TRUE(std::isnan(table.columns[1][0]));
+  EXPECT_EQ(table.columns[1][2], 3.0);
+  EXPECT_DOUBLE_EQ(table.clock.value().interval, 0.01);
+  const TemporaryFile cut("cut.txt", text.substr(0, 200));
+  EXPECT_THAT(input_error_of(cut, [&] { read_table(cut.path(), {}); }), testing::HasSubstr("numbers follow"));
+}
+
 }  // namespace
 }  // namespace beamid::experiments::signal_files_test
