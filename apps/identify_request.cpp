@@ -137,7 +137,14 @@ Experiment one_mode(const fs::path& file, const Record& record, const RecordForm
   const RecordModes found =
       find_modes(file.filename().string(), made_analysable(record), format.window.has_value(), {});
   if (found.modes.empty()) throw refuse("no decaying mode was found");
-  if (!found.decays) throw refuse("the record does not decay");
+  if (!found.decays) {
+    for (const Objection& one : found.objections)
+      if (one.name == "unexplained_motion")
+        throw refuse(
+            fmt::format("modes of constant frequency and damping do not explain {:.2g} % of the motion",
+                        100.0 * one.statistic));
+    throw refuse("the record does not decay");
+  }
   const Pole& pole = found.strongest().pole;
   VectorXd share = pole.shape.cwiseAbs();
   for (Index i = 0; i < share.size(); ++i) share[i] /= std::max(record.samples.row(i).norm(), 1e-300);

@@ -140,9 +140,10 @@ Results decay_results(const std::vector<RecordRequest>& requests, const std::vec
       shaken = modes_without_input(requests, names, records, random);
     } catch (const InputError&) {  // too short for it
     }
-    if (!shaken.empty() && std::ranges::all_of(shaken, [](const RecordModes& one) {
-          return one.steady && !one.modes.empty();
-        })) {
+    const auto answers = [](const RecordModes& one) {  // modes, or what the motion is instead
+      return one.steady && (!one.modes.empty() || one.is_steady_sine());
+    };
+    if (!shaken.empty() && std::ranges::all_of(shaken, answers)) {
       found = std::move(shaken);
       settings = random;
       for (RecordModes& one : found)
@@ -241,7 +242,8 @@ Command modal_command() {
           "  beamid modal shaken_frame.csv --out results\n",
           run_modal,
           "",
-          "3  --events: a sign, the order or the clocks of base and response are not as described; the first "
+          "3  no mode, no decay, or motion that the modes do not explain; one mode that may be two. Of "
+          "--events: a sign, the order or the clocks of base and response are not as described; the first "
           "lines state which. Of frf_lscf and frf_half_power: hits of so few samples that no mass stands.\n"};
 }
 

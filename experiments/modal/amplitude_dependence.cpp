@@ -124,6 +124,60 @@ std::vector<AmplitudePoint> amplitude_dependence(const VectorXd& signal, double 
   return points;
 }
 
+std::optional<AmplitudeTrend> amplitude_trend(const std::vector<AmplitudePoint>& points) {
+  constexpr std::size_t fewest = 3;
+  constexpr double clearly = 5, between = 3, least_frequency = 0.002, least_damping = 0.2;
+  if (points.size() < fewest) return {};
+  const AmplitudePoint &first = points.front(), &middle = points[points.size() / 2], &last = points.back();
+  const auto changes = [&](double AmplitudePoint::*value, double AmplitudePoint::*deviation, double least) {
+    const double change = last.*value - first.*value, of_middle = middle.*value - first.*value,
+                 off = std::max(0.0, std::abs(of_middle - 0.5 * change) - 0.5 * std::abs(change));
+    return std::abs(change) > clearly * std::hypot(first.*deviation, last.*deviation) &&
+           std::abs(change) > least * std::abs(last.*value) && off < between * middle.*deviation;
+  };
+  const AmplitudeTrend trend{
+      first, last,
+      changes(&AmplitudePoint::frequency_hz, &AmplitudePoint::frequency_deviation_hz, least_frequency),
+      changes(&AmplitudePoint::damping_ratio, &AmplitudePoint::damping_ratio_deviation, least_damping)};
+  if (trend.frequency || trend.damping) return trend;
+  return {};
+}
+
+std::string AmplitudeTrend::changes() const {
+  std::string text;
+  if (frequency) text = fmt::format("frequency {:.4g} to {:.4g} Hz", first.frequency_hz, last.frequency_hz);
+  if (damping)
+    text += fmt::format("{}damping ratio {:.3g} to {:.3g} %", frequency ? ", " : "",
+                        100 * first.damping_ratio, 100 * last.damping_ratio);
+  return text;
+}
+
+double overtone_coherence(const VectorXd& signal, double interval, double frequency_hz, int n) {
+  constexpr double first_zero = 2.06, fewest = 5;  // periods
+  const double w = 2 * pi * frequency_hz * interval;
+  const auto half = static_cast<Index>(std::ceil(pi * first_zero / w));
+  const Index length = 2 * half + 1, hop = std::max<Index>(1, half / 4);
+  if (static_cast<double>(signal.size()) < fewest * static_cast<double>(half)) return 0.0;
+  const VectorXd kernel = kaiser(half);
+  const auto turning = [&](int times) {
+    VectorXcd wave(length);
+    for (Index k = -half; k <= half; ++k)
+      wave[k + half] = kernel[k + half] * std::polar(1.0, -w * times * static_cast<double>(k));
+    return wave;
+  };
+  const VectorXcd one = turning(1), several = turning(n);
+  Complex product = 0;
+  double of_one = 0, of_several = 0;
+  for (Index at = 0; at + length <= signal.size(); at += hop) {
+    const auto part = signal.segment(at, length).cast<Complex>().array();
+    const Complex power = std::pow((one.array() * part).sum(), n), other = (several.array() * part).sum();
+    product += other * std::conj(power);  // both turn n w from part to part
+    of_one += std::norm(power);
+    of_several += std::norm(other);
+  }
+  return std::norm(product) / std::max(of_one * of_several, 1e-300);
+}
+
 namespace {
 
 using Complex = std::complex<double>;

@@ -74,6 +74,26 @@ std::vector<AmplitudePoint> amplitude_dependence(const Eigen::VectorXd& signal, 
                                                  const std::vector<std::complex<double>>& others,
                                                  const AmplitudeSettings& settings = {});
 
+/// Frequency and damping ratio that change along a decay, with its amplitude.
+struct AmplitudeTrend {
+  AmplitudePoint first, last;
+  bool frequency = false, damping = false;  ///< which of them changes
+
+  /// "frequency 5.1 to 5 Hz, damping ratio 1.2 to 0.9 %"
+  std::string changes() const;
+};
+
+/// The first and the last of the points where they differ by five standard deviations, in frequency by 0.2 %
+/// or in damping ratio by a fifth as well, and the point in the middle lies between them to three: of a decay
+/// of constant frequency and damping one in a million does. Three points at least.
+std::optional<AmplitudeTrend> amplitude_trend(const std::vector<AmplitudePoint>& points);
+
+/// How well the motion at n times a frequency follows that at the frequency in amplitude and phase: the
+/// coherence |sum z_n conj(z_1^n)|^2 / (sum |z_n|^2 sum |z_1^n|^2) of the signals brought to rest, 1 of an
+/// overtone of a characteristic that is not linear, also where the frequency drifts. 0 of a signal of less
+/// than five periods.
+double overtone_coherence(const Eigen::VectorXd& signal, double interval, double frequency_hz, int n);
+
 // Whether a decay has the overtone of a sensor that gives less where more is to be measured.
 
 /// What a characteristic y(x) = x - b x^3 makes of x = A cos(theta): A (1 - e) cos(theta), e = 3/4 b A^2, and

@@ -1,7 +1,9 @@
 // beamid modal, end to end: what a user gets.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -333,6 +335,53 @@ TEST(Modal, NeedsTheMotionOfTheBaseForEvents) {
   const Outcome outcome = place.run("modal decay.csv --events");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no channel of base_acceleration"));
+}
+
+/// Samples of a signal at 200 Hz as a CSV file.
+std::string accelerations(int count, const std::function<double(int)>& signal) {
+  std::ostringstream text;
+  text << "time_s,acceleration_m_per_s2\n";
+  for (int k = 0; k < count; ++k) text << fmt::format("{:.3f},{:.7g}\n", 0.005 * k, signal(k));
+  return text.str();
+}
+
+// What holds no mode gives no number with exit code 0: noise, the sine of a generator, tones that come and
+// go.
+TEST(Modal, OfARecordWithoutAStructureFails) {
+  Workplace place;
+  const Eigen::VectorXd noise = experiments::standard_normal(4000, 7, 0);
+  const double w = 2 * std::numbers::pi * 0.005;
+  place.write("noise.csv", accelerations(4000, [&](int k) { return noise[k]; }));
+  place.write("sine.csv",
+              accelerations(4000, [&](int k) { return std::sin(7.3 * w * k) + 0.01 * noise[k]; }));
+  place.write("tones.csv", accelerations(4000, [&](int k) {
+                const double tones[] = {5.1, 7.7, 6.4, 9.2, 5.8, 8.3, 7.1, 6.0};
+                return std::sin(tones[k / 500] * w * k) + 0.01 * noise[k];
+              }));
+  for (const char* record : {"noise.csv", "sine.csv", "tones.csv"}) {
+    const Outcome outcome = place.run(std::string("modal ") + record);
+    EXPECT_EQ(outcome.code, 3) << record << "\n" << outcome.out;
+  }
+  EXPECT_THAT(place.run("modal sine.csv").out, HasSubstr("steady sine"));
+}
+
+// Oracle: the motion that was made, held for 2 s and then released at 3.1 Hz with 1 %.
+TEST(Modal, BeginsBehindTheReleaseOfWhatWasHeld) {
+  Workplace place;
+  const Eigen::VectorXd noise = experiments::standard_normal(4000, 8, 0);
+  const double omega = 2 * std::numbers::pi * 3.1;
+  std::string text = accelerations(4000, [&](int k) {
+    const double t = 0.005 * (k - 400);
+    return (t < 0 ? 1.0 : std::exp(-0.01 * omega * t) * std::cos(omega * t)) + 0.005 * noise[k];
+  });
+  text.replace(0, text.find('\n'), "time_s,displacement_mm");
+  place.write("held.csv", text);
+  const Outcome outcome = place.run("modal held.csv --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("the release of what was held"));
+  const json mode = json::parse(outcome.out)["records"][0]["modes"][0];
+  EXPECT_NEAR(mode["frequency_hz"].get<double>(), 3.1, 0.003);
+  EXPECT_NEAR(mode["damping_ratio"].get<double>(), 0.01, 0.0005);
 }
 
 }  // namespace

@@ -23,103 +23,7 @@
 namespace beamid::experiments {
 namespace {
 
-// Whether what a decay's modes leave is the same motion going on.
-
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
-
-constexpr int resolutions_beside = 3;  // resolutions
-
-/// Power of all channels at a frequency under a Hann window.
-double windowed_power(const MatrixXd& samples, double interval, double frequency_hz) {
-  const Index count = samples.cols();
-  Eigen::VectorXcd wave(count);
-  for (Index k = 0; k < count; ++k) {
-    const double t = static_cast<double>(k), turn = 2.0 * std::numbers::pi;
-    wave[k] = std::polar(0.5 - 0.5 * std::cos(turn * (t + 0.5) / static_cast<double>(count)),
-                         -turn * frequency_hz * interval * t);
-  }
-  return (samples.cast<std::complex<double>>() * wave).squaredNorm();
-}
-
-/// Mean power about a frequency.
-double power_about(const MatrixXd& samples, double interval, double frequency_hz) {
-  const double step = 1.0 / (interval * static_cast<double>(samples.cols()));
-  double sum = 0.0;
-  for (int k = -resolutions_beside; k <= resolutions_beside; ++k)
-    sum += windowed_power(samples, interval, frequency_hz + k * step);
-  return sum / (2 * resolutions_beside + 1);
-}
-
-double median_power(const MatrixXd& samples, double interval, std::pair<double, double> band_hz) {
-  constexpr int fewest = 20, most = 200;
-  const double resolutions =
-      (band_hz.second - band_hz.first) * interval * static_cast<double>(samples.cols());
-  const int count = std::clamp(static_cast<int>(resolutions), fewest, most);
-  std::vector<double> powers;
-  for (int k = 0; k < count; ++k)
-    powers.push_back(windowed_power(samples, interval,
-                                    band_hz.first + (k + 0.5) / count * (band_hz.second - band_hz.first)));
-  return median(powers);
-}
-
-double motion_size_of(const MatrixXd& samples) {
-  return (samples.colwise() - samples.rowwise().mean()).norm();
-}
-
-/// Whether the motion of some periods is larger than that of some before.
-bool motion_rises(const MatrixXd& motion, Index part) {
-  constexpr double larger = 1.2;
-  if (part < 4) return true;
-  double least = motion_size_of(motion.leftCols(std::min(part, motion.cols())));
-  for (Index at = part; at + part <= motion.cols(); at += part) {
-    const double size = motion_size_of(motion.middleCols(at, part));
-    if (size > larger * least) return true;
-    least = std::min(least, size);
-  }
-  return false;
-}
-
-Index samples_in_periods(double periods, const ModeEstimate& mode, double interval) {
-  return static_cast<Index>(periods / (mode.pole.frequency_hz() * interval));
-}
-
-/// Modes of a free decay leave noise, or, where frequency and damping follow the amplitude, motion that dies
-/// out with them. Under loads that go on they leave motion at their own frequencies to the end, and it rises
-/// at times. So: they leave more than 15 % of the motion; some four periods of it are 1.2 times as large as
-/// four before; and at one of them, in the second half of `target` - `reproduced`, the power within three
-/// resolutions to either side is 10 times the band's median, and a quarter of the first half's or more. (Of
-/// white noise the mean of 7 powers reaches 10 medians with probability 1e-13.)
-bool motion_goes_on(const RecordModes& found) {
-  constexpr double least_left = 0.15, above_median = 10.0, as_early = 0.25;
-  if (found.reproduced.size() == 0 || found.modes.empty()) return false;
-  const MatrixXd left = found.target - found.reproduced;
-  const MatrixXd motion = found.target.colwise() - found.target.rowwise().mean();
-  if (left.norm() < least_left * motion.norm() ||
-      !motion_rises(motion, samples_in_periods(4.0, found.strongest(), found.interval)))
-    return false;
-  const MatrixXd early = left.leftCols(left.cols() / 2), late = left.rightCols(left.cols() / 2);
-  const double usual = median_power(late, found.interval, found.band_hz);
-  return std::any_of(found.modes.begin(), found.modes.end(), [&](const ModeEstimate& mode) {
-    const double f = mode.pole.frequency_hz(), power = power_about(late, found.interval, f);
-    return power > above_median * usual && power > as_early * power_about(early, found.interval, f);
-  });
-}
-
-/// Whether a record whose largest reading stands in its second half, from where on it was taken for a decay,
-/// moves nearly as much in two periods of the strongest mode before as in two after: a hit or a release
-/// begins at once, random vibration comes to its largest and goes.
-bool moved_before(const Record& whole, const RecordModes& found) {
-  constexpr double as_much = 0.7;
-  if (found.modes.empty()) return false;
-  const Index before =
-      std::lower_bound(whole.time.begin(), whole.time.end(), found.record.time[0]) - whole.time.begin();
-  if (before <= found.record.size()) return false;
-  const Index part =
-      std::min(found.record.size(), samples_in_periods(2.0, found.strongest(), whole.interval()));
-  if (part < 2 || part > before) return false;
-  return motion_size_of(whole.samples.middleCols(before - part, part)) >
-         as_much * motion_size_of(whole.samples.middleCols(before, part));
-}
 
 // What in a free decay makes its modes wrong by more than their deviations.
 
@@ -139,12 +43,32 @@ ModalEstimate strongest_of(const std::vector<ModeEstimate>& modes, const ModeEst
   return mode;
 }
 
+/// Absent where decaying modes explain the motion about it, or the record is no decay.
+std::optional<AmplitudeTrend> trend_of_strongest(const RecordModes& found, const VectorXd& signal) {
+  constexpr double least_left = 0.05;
+  const bool is_none = std::any_of(found.objections.begin(), found.objections.end(),
+                                   [](const Objection& one) { return one.name == "no_decay"; });
+  if (is_none || !residual_at_strongest(found).exceeds(least_left)) return {};
+  std::vector<std::complex<double>> others;
+  for (const ModeEstimate& mode : found.modes) others.push_back(mode.pole.rate);
+  try {
+    return amplitude_trend(
+        amplitude_dependence(signal, found.record.interval(), found.strongest().pole.rate, others));
+  } catch (const std::invalid_argument&) {  // too short
+    return {};
+  }
+}
+
 /// Sentences about the strongest mode in the channel that shows it best: a jump of the motion on the way
 /// (decay_jump.hpp), and the overtone of a sensor that saturates softly (amplitude_dependence.hpp), where the
 /// damping ratio is wrong by more than two of its deviations through it.
-std::vector<Objection> decay_objections_to(const RecordModes& found) {
+///
+/// And where frequency or damping follow the amplitude and constant ones do not explain a twentieth of the
+/// motion: then the deviations of the mode are widened to hold both ends of the decay.
+std::vector<Objection> decay_objections_to(RecordModes& found) {
   if (found.modes.empty()) return {};
-  const ModeEstimate& strongest = found.strongest();
+  const auto at = static_cast<std::size_t>(&found.strongest() - found.modes.data());
+  const ModeEstimate& strongest = found.modes[at];
   const Record& record = found.record;
   Eigen::Index channel = 0;
   (strongest.pole.shape.cwiseAbs().array() / record.samples.rowwise().norm().array()).maxCoeff(&channel);
@@ -167,6 +91,22 @@ std::vector<Objection> decay_objections_to(const RecordModes& found) {
             "{} The damping ratio of the mode at {:.4g} Hz is wrong by about {:.2g} % through it, "
             "more than its standard deviation. Expected a later --window, or a sensor of larger range.",
             overtone->words(), mode.frequency_hz, 100 * std::abs(overtone->damping_error())));
+  if (auto trend = trend_of_strongest(found, signal)) {
+    ModeEstimate& one = found.modes[at];
+    const double f = one.pole.frequency_hz(), ratio = one.pole.damping_ratio();
+    for (const AmplitudePoint& end : {trend->first, trend->last}) {
+      one.frequency_spread_hz = std::max(one.frequency_spread_hz, std::abs(end.frequency_hz - f));
+      one.damping_ratio_spread = std::max(one.damping_ratio_spread, std::abs(end.damping_ratio - ratio));
+    }
+    objections.emplace_back(
+        "amplitude_dependent",
+        fmt::format(
+            "The mode at {:.4g} Hz depends on its amplitude: {} as that falls from {:.3g} to {:.3g} {}. "
+            "One frequency and damping ratio do not describe it; intervals are widened to hold both "
+            "ends. --amplitude lists the values between; a later --window gives those of small motion.",
+            f, trend->changes(), trend->first.amplitude, trend->last.amplitude,
+            si_unit(record.channels[static_cast<std::size_t>(channel)].quantity)));
+  }
   return objections;
 }
 
@@ -256,53 +196,63 @@ void take_modes(RecordModes& found) {
 /// A method for decays wants one, a method for random vibration a steady record. A slow decay loses little
 /// over a record, and two near modes can be stronger late: what decaying modes reproduce is a decay.
 void check_kind(const Record& whole, const MatrixXd& samples, RecordModes& found) {
-  constexpr const char* no_decay =
-      "Standard deviations are too small. For random vibration take --method ssi_cov or bayoma and a record "
-      "of many "
-      "decay times; for a decay, a --window of it alone.";
-  constexpr double reproduced = 0.5, mostly = 0.3;  // of the motion's size, the residual
+  constexpr double reproduced = 0.5;  // of the motion's size, the residual
   const MatrixXd motion = samples.colwise() - samples.rowwise().mean();
   const Index half = motion.cols() / 2;
   const double early = motion.leftCols(half).squaredNorm(), late = motion.rightCols(half).squaredNorm();
   const double residual = found.reproduced.size() > 0 ? (found.target - found.reproduced).norm()
                                                       : std::numeric_limits<double>::infinity();
-  const bool decays = (found.polished && !found.modes.empty()) ||
-                      residual<reproduced * motion.norm(), is_as_strong_late = late> 0.7 * early;
-  const std::size_t before = found.objections.size();
-  if (found.free_decay && !decays && is_as_strong_late)
+  const bool decays = (found.polished && !found.modes.empty()) || residual < reproduced * motion.norm();
+  found.decays = decays || !found.free_decay;
+  if (found.free_decay && !decays && late > 0.7 * early)
     found.objections.emplace_back(
         "no_decay",
         "The record does not decay: its second half is nearly as strong as its first, and no decaying modes "
         "reproduce it. For random vibration take --method ssi_cov; for a decay that comes later in the "
         "record, --window.");
-  else if (found.free_decay && motion_goes_on(found))
-    found.objections.emplace_back(
-        "no_decay",
-        fmt::format("The motion goes on: the modes do not explain {:.2g} % of it, at their own frequencies "
-                    "and to the end, which no decay does. {}",
-                    100.0 * residual / motion.norm(), no_decay));
-  else if (found.free_decay && moved_before(whole, found))
-    found.objections.emplace_back(
-        "no_decay",
-        fmt::format("No release was found: the record moves as much before its largest reading, at {:.4g} s, "
-                    "as after. {}",
-                    found.record.time[0], no_decay));
-  // What decaying modes reproduce for the most part is a decay, whatever goes on beside it.
-  found.decays =
-      found.objections.size() == before || (residual < mostly * motion.norm() && !is_as_strong_late);
+  else if (found.free_decay)
+    object_to_decay(whole, found);
   found.steady = found.free_decay || std::max(early, late) <= 10 * std::min(early, late);
   if (!found.steady)
     found.objections.emplace_back(
         "unsteady",
         "The record is not steady: one half is much stronger than the other. For a free decay take --method "
         "era; for random vibration, a --window without the strong part.");
+  constexpr double most_left = 0.5;  // of the autocorrelations
+  if (!found.free_decay && !found.modes.empty() && found.left() > most_left)
+    found.objections.emplace_back(
+        "unexplained_motion",
+        fmt::format(
+            "The modes do not explain {:.2g} % of the autocorrelations: the strongest motion is none of "
+            "theirs. A longer record, another --order or --band may show its mode; a record without "
+            "a structure has none.",
+            100.0 * found.left()),
+        found.left(), most_left);
+}
+
+/// Where there is no mode at all there is no answer.
+void state_no_mode(RecordModes& found) {
+  if (!found.modes.empty()) return;
+  found.objections.emplace_back(
+      "no_mode",
+      found.is_steady_sine() ? "No mode: the record is a steady sine, which has no decay and no damping "
+                               "ratio. Record a release, "
+                               "a hit or random vibration with the machine at rest."
+      : found.mode_by_mode
+          ? "No mode: no peak of the spectrum gave one. Another --band or --window may show one; a sensor or "
+            "a record without a structure's motion has none."
+          : "No mode: no pole is both stable over the model orders and confirmed. Another --band, --window "
+            "or "
+            "--order may show one; a sensor or a record without a structure's motion has none.",
+      0.0, 1.0);
 }
 
 /// Of random vibration: sines that last are no mode's, and next to one they draw it to themselves.
-void take_lines_out(const VectorXd& scales, CoarseRecord& coarse, RecordModes& found) {
+/// @returns their frequencies [Hz]
+std::vector<double> take_lines_out(const VectorXd& scales, CoarseRecord& coarse, RecordModes& found) {
   const SteadyLines steady =
       steady_lines(scales.cwiseInverse().asDiagonal() * coarse.samples, found.interval);
-  if (steady.lines.empty()) return;
+  if (steady.lines.empty()) return {};
   coarse.samples = scales.asDiagonal() * steady.rest;
   std::vector<double> frequencies;
   double squares = 0.0;
@@ -310,18 +260,39 @@ void take_lines_out(const VectorXd& scales, CoarseRecord& coarse, RecordModes& f
     frequencies.push_back(line.frequency_hz);
     squares += line.share * line.share;
   }
+  constexpr double almost_all = 0.9;  // of the motion's root mean square
   const bool several = frequencies.size() > 1;
   found.objections.emplace_back(
       "steady_line",
       fmt::format("{} at {}, {:.2g} % of the motion's root mean square, {} over the whole record, as no mode "
                   "does that is shaken at random: a machine or the mains. {} before modes were sought.",
                   several ? "Lines" : "A line", frequencies_text(frequencies), 100.0 * std::sqrt(squares),
-                  several ? "last" : "lasts", several ? "They were taken out" : "It was taken out"));
+                  several ? "last" : "lasts", several ? "They were taken out" : "It was taken out"),
+      std::sqrt(squares), almost_all);
+  return frequencies;
+}
+
+/// Where a line was taken out of random vibration, what remains of it is no mode: one within a hundredth of
+/// its frequency whose damping ratio is not determined.
+void reject_modes_at_lines(const std::vector<double>& lines_hz, RecordModes& found) {
+  constexpr double near = 0.01;
+  const auto remains = [&](const ModeEstimate& mode) {
+    const Pole& pole = mode.pole;
+    return !(2 * pole.damping_ratio_deviation < pole.damping_ratio()) &&
+           std::any_of(lines_hz.begin(), lines_hz.end(), [&](double line_hz) {
+             return std::abs(line_hz - pole.frequency_hz()) < near * line_hz;
+           });
+  };
+  for (const ModeEstimate& mode : found.modes)
+    if (remains(mode))
+      found.stabilisation.rejected.push_back(
+          {mode.pole, mode.orders, "remains of a line that was taken out"});
+  std::erase_if(found.modes, remains);
 }
 
 /// What the record shows and no mode stands for: lines outside the band, and lines inside it.
 void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found) {
-  std::vector<double> outside, missed;
+  std::vector<double> outside, missed, followed;
   const auto near = [](const RecordLine& line, const Pole& pole) {
     return std::abs(pole.frequency_hz() - line.frequency_hz) <
            std::max(line.resolution_hz, 0.03 * line.frequency_hz);
@@ -336,8 +307,18 @@ void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found)
              std::none_of(rejected.begin(), rejected.end(), [&](const PoleCluster& cluster) {
                return cluster.objection.starts_with("overtone") && near(line, cluster.pole);
              }))
-      missed.push_back(line.frequency_hz);
+      (found.free_decay && followed_multiple(found, line.frequency_hz) > 0 ? followed : missed)
+          .push_back(line.frequency_hz);
   }
+  if (!followed.empty())
+    found.objections.emplace_back(
+        "overtone_mode",
+        fmt::format(
+            "{} at {} {} a multiple of {:.4g} Hz and {} its amplitude and phase: an overtone, no mode. "
+            "Stiffness, clamp or sensor are not linear at these amplitudes.",
+            followed.size() > 1 ? "Lines" : "The line", frequencies_text(followed),
+            followed.size() > 1 ? "are each" : "is", found.strongest().pole.frequency_hz(),
+            followed.size() > 1 ? "follow" : "follows"));
   if (!outside.empty())
     found.objections.emplace_back(
         "lines", fmt::format("{} at {} {} outside this band; --band takes {} in.",
@@ -354,6 +335,12 @@ void name_missed_lines(const std::vector<RecordLine>& lines, RecordModes& found)
 
 double RecordModes::left() const {
   return reproduced.size() > 0 ? (target - reproduced).norm() / target.norm() : 1.0;
+}
+
+bool RecordModes::is_steady_sine() const {
+  return std::any_of(objections.begin(), objections.end(), [](const Objection& one) {
+    return one.name == "steady_line" && one.statistic > one.limit;
+  });
 }
 
 const ModeEstimate& RecordModes::strongest() const {
@@ -385,7 +372,8 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   CoarseRecord coarse = coarse_record(found.record, found.band_hz.second);
   found.interval = coarse.last.interval;
   found.start = found.record.time[0] + coarse.last.start;
-  if (!found.free_decay) take_lines_out(scales, coarse, found);
+  std::vector<double> steady_hz;
+  if (!found.free_decay) steady_hz = take_lines_out(scales, coarse, found);
   const auto method = registry.make(settings.method.name, settings.method.options);
   if (found.mode_by_mode) {
     found.search = method->search(scales.cwiseInverse().asDiagonal() * coarse.samples, found.interval,
@@ -397,6 +385,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
 
   found.target =
       found.free_decay ? coarse.samples : MatrixXd(scales.cwiseAbs2().asDiagonal() * found.search.decays);
+  reject_modes_at_lines(steady_hz, found);
   add_shapes(scales, found);
   leave_out_weak(settings, found);
   if (settings.polish.value_or(found.free_decay && !found.mode_by_mode)) {
@@ -411,6 +400,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
     add_shapes(scales, found);
   }
   check_kind(whole, coarse.samples, found);
+  state_no_mode(found);
   name_missed_lines(lines, found);
   if (found.free_decay) {
     for (ModeEstimate& mode : found.modes)  // back to the undecimated record and its beginning

@@ -59,6 +59,7 @@ struct RecordModes {
   Eigen::MatrixXd reproduced;       ///< (p x L)
 
   double left() const;                    ///< of the target's size, what the modes leave; 1 without any
+  bool is_steady_sine() const;            ///< lines that last are nearly all of the motion
   const ModeEstimate& strongest() const;  ///< of one mode at least
 };
 

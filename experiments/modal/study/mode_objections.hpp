@@ -24,8 +24,38 @@ std::string objection_to(const Pole& from, const JointDecayFit& fit, std::size_t
 /// Takes the modes that are multiples (2 and 3) of a stronger one below them, with its damping ratio, out of
 /// the modes: a motion a cos(w t) that decays with d leaves the n-th power of a curved characteristic as
 /// a^n cos(n w t), which decays with n d. A sensor that saturates leaves one that decays more slowly: told by
-/// its phase, n times that of the motion, and a frequency within 0.3 %.
+/// its phase, n times that of the motion, and a frequency within 0.3 %. Where the frequency drifts, amplitude
+/// and phase follow along the decay (overtone_coherence).
 void set_overtones_aside(RecordModes& found);
+
+/// Whether a frequency is within 5 % of twice or three times that of the strongest mode, whose motion it
+/// follows in amplitude and phase to a coherence of 0.9. @returns the multiple; 0: none
+int followed_multiple(const RecordModes& found, double frequency_hz);
+
+// What contradicts a free decay.
+
+struct ResidualAtMode {
+  double share = 0.0;       ///< root of its power over that of the motion
+  double over_noise = 0.0;  ///< its power over that of the noise
+
+  /// Beyond a share and nine times the noise.
+  bool exceeds(double least_share) const { return share > least_share && over_noise > 9.0; }
+};
+
+/// How much of the motion about the strongest mode decaying modes do not explain: over lines within 15 % of
+/// its frequency, three at least to either side, and its first three time constants, for what random forces
+/// or drafts move later is no part of the decay. The noise is the broadband noise of the channels
+/// (defects.hpp).
+/// @param found with one mode at least
+ResidualAtMode residual_at_strongest(const RecordModes& found);
+
+/// `no_decay` where the motion does not decay, goes on to the end, or was not released; else
+/// `unexplained_motion` where decaying modes do not explain a fifth of the motion about the strongest mode,
+/// which is nine times the power of the noise there: of noise and linear modes neither occurs. Then
+/// found.decays is false, unless the modes explain all but 30 % of a motion that was there from its release
+/// and dies out.
+/// @param whole the record before its window was chosen
+void object_to_decay(const Record& whole, RecordModes& found);
 
 // The same modes in several records, as one.
 

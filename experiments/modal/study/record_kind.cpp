@@ -343,16 +343,59 @@ Index behind_pulses(const Record& record, const Record& measured, Index from, In
   return from;
 }
 
+/// The first sample of a free motion where a deflection is held from `from` on, and then released; else
+/// `from`. Held: the signal stays beyond 0.3 of its deviation, from the mean of its last quarter, for more
+/// than half a period of what follows, and beyond 0.75 of it for 0.7 of that time; a cosine is beyond 0.3
+/// for a fifth of a period. The free motion begins where it falls below.
+Index behind_hold(const VectorXd& signal, double interval, Index from, Index to) {
+  constexpr double low = 0.3, high = 0.75, highest = 1.25;  // of the deviation
+  constexpr double longest = 0.5, flat = 0.7;               // periods; of the samples beyond 0.3
+  const Index count = to - from;
+  if (count < 2 * fewest_decay_samples) return from;
+  const double level = signal.segment(to - count / 4, count / 4).mean(), held = signal[from] - level;
+  Index last = from, across = from;  // beyond 0.3, and on the other side
+  for (; across < to && (signal[across] - level) / held > -low; ++across)
+    if ((signal[across] - level) / held > low) last = across;
+  if (to - across < fewest_decay_samples || last + 1 >= to) return from;
+  double period = 0.0;
+  try {
+    period = 1.0 / strongest_frequency(signal.segment(across, to - across), interval);
+  } catch (const std::invalid_argument&) {
+    return from;
+  }
+  const auto is_hold = [&](Index since) {
+    const auto part = (signal.segment(since, last - since + 1).array() - level) / held;
+    const auto length = static_cast<double>(part.size());
+    return length * interval > longest * period && static_cast<double>((part > high).count()) > flat * length;
+  };
+  Index since = from;  // the largest reading may be the last of what was held
+  const auto beside = [&](Index k) { return (signal[k] - level) / held; };
+  while (since > 0 && beside(since - 1) > low && beside(since - 1) < highest) --since;
+  return is_hold(from) || is_hold(since) ? last + 1 : from;
+}
+
+/// The channel and the sample of the largest reading, relative to each channel's own size.
+std::pair<Index, Index> largest_reading(const Record& record) {
+  const VectorXd size = record.samples.rowwise().norm().cwiseMax(1e-300);
+  Index channel = 0, sample = 0;
+  (size.cwiseInverse().asDiagonal() * record.samples).cwiseAbs().maxCoeff(&channel, &sample);
+  return {channel, sample};
+}
+
 }  // namespace
 
+bool has_hits(const Record& record) {
+  const auto [channel, begin] = largest_reading(record);
+  return !hits_of(record.samples.row(channel).array() - record.samples.row(channel).mean(), record.interval())
+              .empty();
+}
+
 Record from_release(const Record& record, const Record& measured, std::vector<std::string>& remarks) {
-  const VectorXd size = record.samples.rowwise().norm().cwiseMax(1e-300);
-  Index channel = 0, begin = 0;
-  (size.cwiseInverse().asDiagonal() * record.samples).cwiseAbs().maxCoeff(&channel, &begin);
+  const auto [channel, begin] = largest_reading(record);
   const VectorXd signal = record.samples.row(channel).array() - record.samples.row(channel).mean();
   if (const std::vector<Index> hits = hits_of(signal, record.interval()); !hits.empty()) {
     auto [from, to] = longest_decay(signal, hits);
-    from = behind_pulses(record, measured, from, to);
+    from = behind_hold(signal, record.interval(), behind_pulses(record, measured, from, to), to);
     if (to - from >= fewest_decay_samples) {
       remarks.push_back(
           fmt::format("{} hits, the first at {} s: the longest decay between them is taken, {} to "
@@ -362,10 +405,13 @@ Record from_release(const Record& record, const Record& measured, std::vector<st
       return part_of(record, from, to - from);
     }
   }
-  const Index behind = behind_pulses(record, measured, begin, record.size());
+  const Index pulses_end = behind_pulses(record, measured, begin, record.size());
+  const Index behind = behind_hold(signal, record.interval(), pulses_end, record.size());
   if (behind == 0 || record.size() - behind < fewest_decay_samples) return record;
   remarks.push_back(fmt::format("Window chosen automatically: the decay from {} on, {} s.",
-                                behind > begin ? "the end of the force's pulse" : "the largest reading",
+                                behind > pulses_end  ? "the release of what was held"
+                                : pulses_end > begin ? "the end of the force's pulse"
+                                                     : "the largest reading",
                                 instant_text(record.time[behind])));
   return part_of(record, behind, record.size() - behind);
 }

@@ -95,9 +95,13 @@ Record motion_of(const Record& record);
 Record complete_part(const Record& record, std::vector<std::string>& remarks);
 
 /// From the largest reading on, relative to each channel's own size; of a record with several hits, the
-/// longest decay between two of them. Where a hammer's force is measured, behind its pulses.
+/// longest decay between two of them. Where a hammer's force is measured, behind its pulses; where a
+/// deflection was held, behind its release.
 /// @param measured the record with its forces
 Record from_release(const Record& record, const Record& measured, std::vector<std::string>& remarks);
+
+/// Whether several hits rise above what moved before, each from rest.
+bool has_hits(const Record& record);
 
 /// @throws std::invalid_argument unless the intervals are equal within 20 %.
 void check_intervals(const Record& record);

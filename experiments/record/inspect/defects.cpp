@@ -133,6 +133,27 @@ std::vector<Run> clipped_runs(const std::vector<double>& signal, const ValueStep
   return clipped;
 }
 
+/// Of a force that rests between pulses, none a copy of the others: its farthest value, held in two or met in
+/// three.
+std::vector<Run> flat_tops(const std::vector<double>& signal) {
+  constexpr double rest = 0.05, most_active = 0.3;
+  const RunSpread spread(signal);
+  const double top =
+      spread.highest - spread.middle > spread.middle - spread.lowest ? spread.highest : spread.lowest;
+  const auto active = std::ranges::count_if(signal, [&](double value) {
+    return std::abs(value - spread.middle) > rest * std::abs(top - spread.middle);
+  });
+  std::vector<Run> runs = runs_where(signal, [&](const Run& run) { return run.value == top; });
+  const auto held = std::ranges::count_if(runs, [](const Run& run) { return run.length > 1; });
+  const auto rise = [&](const Run& run) { return run.first > 0 ? signal[run.first - 1] : 0.0; };
+  const bool copies =
+      std::ranges::all_of(runs, [&](const Run& run) { return rise(run) == rise(runs.front()); });
+  if ((held < 2 && runs.size() < 3) || copies ||
+      static_cast<double>(active) > most_active * static_cast<double>(signal.size()))
+    runs.clear();
+  return runs;
+}
+
 /// Short runs of exactly zero between readings that lie far on one side of it and near each other: a sensor
 /// that did not answer. Far: ten times what a reading usually differs from the mean of its neighbours. A few
 /// are chance.
@@ -373,40 +394,11 @@ void leave_out(const std::vector<Run>& runs, std::vector<double>& samples) {
 
 }  // namespace
 
-namespace {
-
-/// The least difference of a reading from the one before it, where they differ.
-double smallest_step(const std::vector<double>& read) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 1; k < read.size(); ++k)
-    if (read[k] != read[k - 1]) least = std::min(least, std::abs(read[k] - read[k - 1]));
-  return least;
-}
-
-}  // namespace
-
-bool is_dead(const std::vector<double>& samples) {
-  constexpr double far_larger = 1e3, out_of_reach = 1e4, noise_only = 2;
-  constexpr double few_steps = 8;  // of the resolution, where a slow quantity's digits flicker
-  constexpr Index fewest = 64;
-  const std::vector<double> read = finite(samples);
-  if (read.empty() ||
-      *std::max_element(read.begin(), read.end()) == *std::min_element(read.begin(), read.end()))
-    return true;
-  const Eigen::Map<const VectorXd> signal(read.data(), static_cast<Index>(read.size()));
-  const double middle = median(read), power = (signal.array() - middle).square().mean();
-  if (std::abs(middle) > out_of_reach * std::sqrt(power) &&
-      std::sqrt(power) < few_steps * smallest_step(read))
-    return true;
-  if (signal.size() < fewest || !(std::abs(middle) > far_larger * std::sqrt(power))) return false;
-  const double noise = noise_floor(signal);
-  return power < noise_only * noise * noise;
-}
-
 Defects find_defects(const std::vector<double>& samples, SignalKind kind) {
   Defects found;
   if (kind == SignalKind::force) {
     found.clipped = clipped_runs(samples, ValueSteps(samples));
+    if (found.clipped.empty() && !finite(samples).empty()) found.clipped = flat_tops(samples);
     return found;
   }
   std::vector<double> left = samples;

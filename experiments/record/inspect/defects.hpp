@@ -126,7 +126,7 @@ struct Defects {
 };
 
 /// Each in a signal without those before it: spikes, clipping, drop-outs, repeated samples. Of a force only
-/// clipping and samples that are not numbers.
+/// clipping, where its pulses have flat tops at one value as well: held in two of them, or met in three.
 Defects find_defects(const std::vector<double>& samples, SignalKind kind);
 
 }  // namespace beamid::experiments

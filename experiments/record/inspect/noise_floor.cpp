@@ -15,6 +15,8 @@
 #include <unsupported/Eigen/FFT>
 
 #include "experiments/record/inspect/defects.hpp"
+#include "experiments/signal/missing_samples.hpp"
+#include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -154,6 +156,36 @@ std::size_t ValueSteps::most_frequent_beside(double value) const {
   const auto first = value == values_.front() ? counts_.begin() + 1
                                               : counts_.end() - 1 - static_cast<std::ptrdiff_t>(looked_at);
   return *std::max_element(first, first + static_cast<std::ptrdiff_t>(looked_at));
+}
+
+namespace {
+
+/// The least difference of a reading from the one before it, where they differ.
+double smallest_step(const std::vector<double>& read) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1; k < read.size(); ++k)
+    if (read[k] != read[k - 1]) least = std::min(least, std::abs(read[k] - read[k - 1]));
+  return least;
+}
+
+}  // namespace
+
+bool is_dead(const std::vector<double>& samples) {
+  constexpr double far_larger = 1e3, out_of_reach = 1e4, noise_only = 2;
+  constexpr double few_steps = 8;  // of the resolution, where a slow quantity's digits flicker
+  constexpr Index fewest = 64;
+  const std::vector<double> read = finite(samples);
+  if (read.empty() ||
+      *std::max_element(read.begin(), read.end()) == *std::min_element(read.begin(), read.end()))
+    return true;
+  const Eigen::Map<const VectorXd> signal(read.data(), static_cast<Index>(read.size()));
+  const double middle = median(read), power = (signal.array() - middle).square().mean();
+  if (std::abs(middle) > out_of_reach * std::sqrt(power) &&
+      std::sqrt(power) < few_steps * smallest_step(read))
+    return true;
+  if (signal.size() < fewest || !(std::abs(middle) > far_larger * std::sqrt(power))) return false;
+  const double noise = noise_floor(signal);
+  return power < noise_only * noise * noise;
 }
 
 }  // namespace beamid::experiments

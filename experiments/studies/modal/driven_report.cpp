@@ -124,6 +124,9 @@ Table driven_mode_table(const DrivenStudy& study, const std::string& suffix) {
                      "modes they sum to 1."
                    : "Shapes are those of the input to which a mode answers most; results.json has "
                      "the participations of all.";
+  if (p > most_shown)
+    table.note +=
+        fmt::format(" Channels 1 to {} of {} are shown; results.json (--json) has all.", most_shown, p);
   return table;
 }
 
@@ -237,9 +240,12 @@ Results report(const ModalStudySettings& settings, const std::vector<DrivenStudy
     results.paragraph(driven_introduction(settings, study));
     results.notes(study.remarks);
     if (study.modes.empty())
-      results.paragraph(
-          "No mode: no pole was stable over enough model orders and more than the noise around it. Another "
-          "--band, --window or --order may show one.");
+      results.object(
+          {"no_mode",
+           "No mode: no pole was stable over enough model orders and more than the noise around it. "
+           "Another --band, --window or --order may show one.",
+           0.0, 1.0},
+          {}, true);
     else
       results.table(driven_mode_table(study, suffix));
     results.figures.push_back(response_figure(study, suffix));

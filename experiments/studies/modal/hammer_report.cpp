@@ -225,9 +225,11 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   if (study.responses.averages == 1)
     results.paragraph("One hit: H1 and H2 are the same and the coherence is 1, whatever the noise.");
   if (study.modes.empty())
-    results.paragraph(
-        "No mode: no cluster of poles was stable over enough model orders. Another --band or "
-        "--order may show one.");
+    results.object({"no_mode",
+                    "No mode: no pole of the responses is stable over the model orders. Another --band or "
+                    "--order may show one; force and motion of different structures or sensors show none.",
+                    0.0, 1.0},
+                   {}, true);
   else
     results.table(mode_table(study));
   for (const Objection& one : study.objections) results.object(one);

@@ -103,6 +103,9 @@ Table mode_table(const RecordModes& found, const std::string& suffix) {
                 "this record length without noise.",
                 found.mode_by_mode ? "from the likelihood of each mode's band"
                                    : "from the scatter of the correlations between parts of the record");
+  if (const auto all = static_cast<Index>(channels.size()); shown < all)
+    table.note +=
+        fmt::format(" Channels 1 to {} of {} are shown; results.json (--json) has all.", shown, all);
   return table;
 }
 
@@ -167,6 +170,12 @@ void add_merged(const std::vector<RecordModes>& records, const std::vector<Merge
         "clamping may have changed.");
 }
 
+/// Whether no number of the record stands: exit code 3.
+bool refutes(const Objection& one, const RecordModes& found) {
+  return one.name == "close_modes" || one.name == "no_mode" ||
+         (!found.decays && (one.name == "no_decay" || one.name == "unexplained_motion"));
+}
+
 }  // namespace
 
 Results report(const ModalStudySettings& settings, const std::vector<RecordModes>& records) {
@@ -182,15 +191,8 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
     for (const Objection& one : found.record.objections) results.object(one);
     results.paragraph(introduction(settings, found));
     results.notes(found.remarks);
-    if (found.modes.empty())
-      results.paragraph(
-          found.mode_by_mode
-              ? "No mode: no peak of the spectrum gave one. Another --band or --window may show one."
-              : "No mode: no cluster of poles was stable over enough model orders. Another --band, --window "
-                "or --order may show one.");
-    else
-      results.table(mode_table(found, suffix));
-    for (const Objection& one : found.objections) results.object(one, {}, one.name == "close_modes");
+    if (!found.modes.empty()) results.table(mode_table(found, suffix));
+    for (const Objection& one : found.objections) results.object(one, {}, refutes(one, found));
     if (Table rejected = rejected_table(found, suffix); rejected.rows() > 0)
       results.table(std::move(rejected));
     for (Figure& figure : figures(found, suffix)) results.figures.push_back(std::move(figure));

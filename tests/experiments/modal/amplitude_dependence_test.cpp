@@ -95,5 +95,22 @@ TEST(AmplitudeDependence, KeepsModesApart) {
   }
 }
 
+// A motion whose frequency drifts by 5 %, and its cube: an overtone that follows. A mode near three times the
+// frequency does not. Oracle: cos^3 = (3 cos + cos 3) / 4.
+TEST(OvertoneCoherence, TellsAnOvertoneFromAMode) {
+  constexpr double f = 5, interval = 1e-3;
+  const Eigen::Index count = 8000;
+  const Eigen::VectorXd noise = standard_normal(count, 4, 1);
+  Eigen::VectorXd overtone(count), mode(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double t = static_cast<double>(k) * interval, a = std::exp(-0.3 * t),
+                 phase = 2 * pi * f * (t - 0.05 * (1 - std::exp(-0.6 * t)) / 0.6), x = a * std::cos(phase);
+    overtone[k] = x + 0.2 * x * x * x + 1e-3 * noise[k];
+    mode[k] = x + 0.05 * std::exp(-0.4 * t) * std::cos(2 * pi * 3.08 * f * t) + 1e-3 * noise[k];
+  }
+  EXPECT_GT(overtone_coherence(overtone, interval, f, 3), 0.95);
+  EXPECT_LT(overtone_coherence(mode, interval, f, 3), 0.5);
+}
+
 }  // namespace
 }  // namespace beamid::experiments::amplitude_dependence_test

@@ -297,6 +297,76 @@ TEST(FindModes, TakesTheLongestDecayBetweenHits) {
   EXPECT_THAT(PrintToString(found.remarks), HasSubstr("3 hits"));
 }
 
+bool has(const RecordModes& found, const std::string& kind) {
+  return std::any_of(found.objections.begin(), found.objections.end(),
+                     [&](const Objection& one) { return one.name == kind; });
+}
+
+// White noise, a steady sine and tones that come and go: no answer as a free decay, an objection on each.
+TEST(FindModes, DoesNotAnswerWithoutAStructure) {
+  constexpr double rate = 200;
+  constexpr Index count = 4000;
+  const VectorXd t = VectorXd::LinSpaced(count, 0, (count - 1) / rate);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const VectorXd noise = standard_normal(count, seed, 11);
+    const VectorXd sine = (2 * pi * 11.3 * t.array()).sin() + 0.02 * noise.array();
+    VectorXd tones = 0.01 * noise;
+    for (int k = 0; k < 12; ++k) {
+      const double f = 3 * std::pow(2, (5 * k % 24) / 12.0), middle = 1.0 + 1.5 * k;
+      tones.array() += (-((t.array() - middle) / 0.8).square()).exp() * (2 * pi * f * t.array() + k).sin();
+    }
+    for (const VectorXd& signal : {noise, sine, tones}) {
+      const RecordModes found = find_modes("a", record_of(signal, 1 / rate), false, {});
+      EXPECT_FALSE(found.decays) << seed;
+      EXPECT_TRUE(has(found, "no_mode") || has(found, "no_decay") || has(found, "unexplained_motion"))
+          << seed;
+    }
+    ModalStudySettings random;
+    random.method = {"ssi_cov", {}};
+    const RecordModes found = find_modes("a", record_of(sine, 1 / rate), false, random);
+    EXPECT_TRUE(found.is_steady_sine()) << seed;
+    EXPECT_TRUE(found.modes.empty()) << PrintToString(frequencies(found));
+    EXPECT_TRUE(has(found, "no_mode"));
+  }
+}
+
+// A displacement held for 1 s before its release. Oracle: what was simulated.
+TEST(FindModes, BeginBehindTheReleaseOfAHeldDeflection) {
+  constexpr double f = 12, ratio = 0.01, rate = 500, w = 2 * pi * f;
+  const double turn = w * std::sqrt(1 - ratio * ratio);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    VectorXd signal = 0.005 * standard_normal(2500, seed, 12);
+    for (Index k = 0; k < signal.size(); ++k) {
+      const double t = std::max(0.0, static_cast<double>(k) / rate - 1);
+      signal[k] +=
+          std::exp(-ratio * w * t) * (std::cos(turn * t) + ratio * w / turn * std::sin(turn * t)) + 0.2;
+    }
+    const RecordModes found = find_modes("a", record_of(signal, 1 / rate), false, {});
+    ASSERT_EQ(found.modes.size(), 1u) << seed;
+    EXPECT_GT(found.record.time[0], 1.0);
+    EXPECT_LT(found.record.time[0], 1.0 + 1 / f);
+    const Pole& pole = found.modes[0].pole;
+    EXPECT_NEAR(pole.frequency_hz(), f, 4 * pole.frequency_deviation_hz);
+    EXPECT_NEAR(pole.damping_ratio(), ratio, 4 * pole.damping_ratio_deviation);
+    EXPECT_TRUE(found.decays);
+  }
+}
+
+// A cubic spring: the frequency of small motion, 5 Hz, is in the interval, or the result is contradicted.
+TEST(FindModes, NamesADependenceOnTheAmplitude) {
+  for (const double cubic : {-0.3, -0.1, 0.1, 0.2, 0.5})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const RecordModes found = find_modes(
+          "a", Oscillator{.frequency_hz = 5, .ratio = 0.01, .cubic = cubic}.record(200, 15, 0.5, seed), false,
+          {});
+      EXPECT_TRUE(has(found, "amplitude_dependent") || has(found, "unexplained_motion")) << cubic;
+      if (!found.decays || found.modes.empty()) continue;
+      const Pole& pole = found.strongest().pole;
+      EXPECT_NEAR(pole.frequency_hz(), 5, 3 * pole.frequency_deviation_hz) << cubic;
+      EXPECT_NEAR(pole.damping_ratio(), 0.01, 4 * pole.damping_ratio_deviation) << cubic;
+    }
+}
+
 // Oracle: the modes' own variances, 1 / (1 - |e^(s dt)|^2). The second lies above a quarter of the rate.
 TEST(FindModes, HaveTheAmplitudesOfRandomVibrationAtNoLag) {
   const test::ShakenChain chain{.interval = 0.16};

@@ -204,5 +204,18 @@ TEST(Defects, ZerosWithinTheMotionAreDropouts) {
   for (const auto& run : found.dropped) EXPECT_EQ(run.value, 0.0);
 }
 
+// Half sines of 66 samples cut at 60 of them: held by no hand. Hits of a hand below the limit reach no value
+// twice. Oracle: how the pulses were made.
+TEST(Clipping, OfAForceIsItsFlatTopsInSeveralHits) {
+  for (const double limit : {0.1, 2.0}) {
+    Signal force(4000, 0.0);
+    for (int hit = 0; hit < 3; ++hit)
+      for (int k = 0; k < 66; ++k)
+        force[static_cast<std::size_t>(500 + 1200 * hit + k)] =
+            std::min(limit, (1 + 0.13 * hit) * std::sin(3.14159265358979 * (k + 0.5) / 66));
+    EXPECT_EQ(find_defects(force, SignalKind::force).clipped.empty(), limit > 1.5) << limit;
+  }
+}
+
 }  // namespace
 }  // namespace beamid::experiments::defects_test
