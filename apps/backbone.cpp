@@ -48,7 +48,7 @@ int run_backbone(const Values& values) {
     PreparedRecord prepared = read_and_prepare(request.file, request.format);
     prepared.record = made_analysable(prepared.record);
     if (request.format.channels.empty()) put_strongest_first(prepared.record);
-    const Record measured = prepared.record;
+    const Record measured = std::move(prepared.record);
     const std::string file = request.file.string();
     const std::vector<Eigen::Index> outputs = output_channels(measured);
     if (outputs.empty()) throw InputError({file}, "holds forces only; expected a channel of motion");

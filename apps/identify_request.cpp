@@ -138,11 +138,10 @@ Experiment one_mode(const fs::path& file, const Record& record, const RecordForm
       find_modes(file.filename().string(), made_analysable(record), format.window.has_value(), {});
   if (found.modes.empty()) throw refuse("no decaying mode was found");
   if (!found.decays) {
-    for (const Objection& one : found.objections)
-      if (one.name == "unexplained_motion")
-        throw refuse(
-            fmt::format("modes of constant frequency and damping do not explain {:.2g} % of the motion",
-                        100.0 * one.statistic));
+    if (const Objection* const one = found.objection("unexplained_motion"))
+      throw refuse(
+          fmt::format("modes of constant frequency and damping do not explain {:.2g} % of the motion",
+                      100.0 * one->statistic));
     throw refuse("the record does not decay");
   }
   const Pole& pole = found.strongest().pole;

@@ -69,7 +69,7 @@ class WhitenedLine {
     const Small& lower = factor.matrixLLT();
     const Index p = lower.rows();
     whitener_ = Small::Zero(p, p);
-    for (Index c = 0; c < p; ++c) {  // by columns; the diagonal is real
+    for (Index c = 0; c < p; ++c) {  // Eigen's solve divides complex numbers where the diagonal is real
       whitener_(c, c) = 1.0 / lower(c, c).real();
       for (Index r = c + 1; r < p; ++r) {
         Complex sum = 0.0;
@@ -126,9 +126,9 @@ class PairLikelihood {
     return std::abs(Complex(at[real21], at[imaginary21])) * std::sqrt(start_.density / force_density(at, 1));
   }
 
-  VectorXd shape(const VectorXd& at, int i) const {
+  VectorXd unscaled_shape(const VectorXd& at, int i) const {
     const Index more = coefficients_.rows() - 1;
-    return (start_.shapes.col(i) + across_[i] * at.segment(shapes + i * more, more)).normalized();
+    return start_.shapes.col(i) + across_[i] * at.segment(shapes + i * more, more);
   }
 
   double operator()(const VectorXd& at) const {
@@ -153,9 +153,10 @@ class PairLikelihood {
     std::vector<Moved> changes(static_cast<std::size_t>(q));
     for (Index k = 0; k < n; ++k) {
       const double f = frequency_hz_[k];
-      const WhitenedLine line(motion.moved(f), motion.noise_density);
+      const Moved read = motion.moved(f);
+      const WhitenedLine line(read, motion.noise_density);
       const Small& whitener = line.whitener();
-      const Moved moved = whitener * motion.moved(f);
+      const Moved moved = whitener * read;
       const Column left = whitener * coefficients_.col(k);
       motion.change(f, changes);
       const Eigen::RowVector2cd moved_left = left.adjoint() * moved;
@@ -209,11 +210,9 @@ class PairLikelihood {
       for (int i = 0; i < 2; ++i) {
         frequency_hz[i] = of.frequency(at, i);
         damping_ratio[i] = std::exp(at[zeta1 + i]);
-        shapes.col(i) = of.shape(at, i);
         // s = v / |v|: ds = (dv - s (s^T dv)) / |v|
-        const Index more = shapes.rows() - 1;
-        const VectorXd v =
-            of.start_.shapes.col(i) + of.across_[i] * at.segment(Entry::shapes + i * more, more);
+        const VectorXd v = of.unscaled_shape(at, i);
+        shapes.col(i) = v.normalized();
         across[i] = (of.across_[i] - shapes.col(i) * (shapes.col(i).transpose() * of.across_[i])) / v.norm();
       }
       forces << std::exp(at[l11]), 0.0, Complex(at[real21], at[imaginary21]) * std::sqrt(of.start_.density),
@@ -310,7 +309,7 @@ AmbientMode mode_at(const PairLikelihood& likelihood, const Descent& found, cons
   mode.frequency_hz = likelihood.frequency(found.at, i);
   mode.damping_ratio = std::exp(found.at[zeta1 + i]);
   mode.noise_density = std::exp(found.at[noise]);
-  mode.shape = basis * likelihood.shape(found.at, i);
+  mode.shape = basis * likelihood.unscaled_shape(found.at, i).normalized();
   mode.frequency_deviation_hz = likelihood.unit_hz() * std::sqrt(std::max(0.0, covariance(f1 + i, f1 + i)));
   mode.damping_ratio_deviation =
       mode.damping_ratio * std::sqrt(std::max(0.0, covariance(zeta1 + i, zeta1 + i)));

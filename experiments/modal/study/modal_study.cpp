@@ -46,9 +46,7 @@ ModalEstimate strongest_of(const std::vector<ModeEstimate>& modes, const ModeEst
 /// Absent where decaying modes explain the motion about it, or the record is no decay.
 std::optional<AmplitudeTrend> trend_of_strongest(const RecordModes& found, const VectorXd& signal) {
   constexpr double least_left = 0.05;
-  const bool is_none = std::any_of(found.objections.begin(), found.objections.end(),
-                                   [](const Objection& one) { return one.name == "no_decay"; });
-  if (is_none || !residual_at_strongest(found).exceeds(least_left)) return {};
+  if (found.objection("no_decay") || !found.at_strongest.exceeds(least_left)) return {};
   std::vector<std::complex<double>> others;
   for (const ModeEstimate& mode : found.modes) others.push_back(mode.pole.rate);
   try {
@@ -91,7 +89,7 @@ std::vector<Objection> decay_objections_to(RecordModes& found) {
             "{} The damping ratio of the mode at {:.4g} Hz is wrong by about {:.2g} % through it, "
             "more than its standard deviation. Expected a later --window, or a sensor of larger range.",
             overtone->words(), mode.frequency_hz, 100 * std::abs(overtone->damping_error())));
-  if (auto trend = trend_of_strongest(found, signal)) {
+  if (const auto trend = trend_of_strongest(found, signal)) {
     ModeEstimate& one = found.modes[at];
     const double f = one.pole.frequency_hz(), ratio = one.pole.damping_ratio();
     for (const AmplitudePoint& end : {trend->first, trend->last}) {
@@ -236,14 +234,12 @@ void state_no_mode(RecordModes& found) {
   found.objections.emplace_back(
       "no_mode",
       found.is_steady_sine() ? "No mode: the record is a steady sine, which has no decay and no damping "
-                               "ratio. Record a release, "
-                               "a hit or random vibration with the machine at rest."
+                               "ratio. Record a release, a hit or random vibration with the machine at rest."
       : found.mode_by_mode
           ? "No mode: no peak of the spectrum gave one. Another --band or --window may show one; a sensor or "
             "a record without a structure's motion has none."
           : "No mode: no pole is both stable over the model orders and confirmed. Another --band, --window "
-            "or "
-            "--order may show one; a sensor or a record without a structure's motion has none.",
+            "or --order may show one; a sensor or a record without a structure's motion has none.",
       0.0, 1.0);
 }
 
@@ -337,10 +333,14 @@ double RecordModes::left() const {
   return reproduced.size() > 0 ? (target - reproduced).norm() / target.norm() : 1.0;
 }
 
+const Objection* RecordModes::objection(const std::string& kind) const {
+  const auto at = std::ranges::find(objections, kind, &Objection::name);
+  return at == objections.end() ? nullptr : &*at;
+}
+
 bool RecordModes::is_steady_sine() const {
-  return std::any_of(objections.begin(), objections.end(), [](const Objection& one) {
-    return one.name == "steady_line" && one.statistic > one.limit;
-  });
+  const Objection* const line = objection("steady_line");
+  return line && line->statistic > line->limit;
 }
 
 const ModeEstimate& RecordModes::strongest() const {

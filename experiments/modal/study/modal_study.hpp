@@ -38,6 +38,15 @@ struct ModeEstimate {
   double amplitude(Eigen::Index channel) const { return std::abs(pole.shape[channel]); }
 };
 
+/// Of the motion about the strongest mode, what decaying modes do not explain (mode_objections.hpp).
+struct ResidualAtMode {
+  double share = 0.0;       ///< root of its power over that of the motion
+  double over_noise = 0.0;  ///< its power over that of the noise
+
+  /// Beyond a share and nine times the noise.
+  bool exceeds(double least_share) const { return share > least_share && over_noise > 9.0; }
+};
+
 /// The modes of one record, and how they were found.
 struct RecordModes {
   std::string name;                  ///< of the record
@@ -57,7 +66,9 @@ struct RecordModes {
   std::vector<ModeEstimate> modes;  ///< by rising frequency
   Eigen::MatrixXd target;           ///< (p x L) what the modes were to reproduce: record or autocorrelations
   Eigen::MatrixXd reproduced;       ///< (p x L)
+  ResidualAtMode at_strongest;      ///< of a free decay; zero where there is none
 
+  const Objection* objection(const std::string& kind) const;  ///< the first of its kind; nullptr: none
   double left() const;                    ///< of the target's size, what the modes leave; 1 without any
   bool is_steady_sine() const;            ///< lines that last are nearly all of the motion
   const ModeEstimate& strongest() const;  ///< of one mode at least

@@ -118,10 +118,8 @@ int followed_multiple(const RecordModes& found, double frequency_hz) {
   if (n < 2 || n > 3 || std::abs(frequency_hz - n * base.frequency_hz()) > off * frequency_hz) return 0;
   Index channel = 0;
   base.shape.cwiseAbs().maxCoeff(&channel);
-  return overtone_coherence(found.target.row(channel).transpose(), found.interval, base.frequency_hz(), n) >
-                 followed
-             ? n
-             : 0;
+  const VectorXd signal = found.target.row(channel).transpose();
+  return overtone_coherence(signal, found.interval, base.frequency_hz(), n) > followed ? n : 0;
 }
 
 void set_overtones_aside(RecordModes& found) {
@@ -129,7 +127,7 @@ void set_overtones_aside(RecordModes& found) {
   for (const ModeEstimate& mode : found.modes) {
     const auto base = std::find_if(found.modes.begin(), found.modes.end(),
                                    [&](const ModeEstimate& one) { return multiple_of(one, mode) > 0; });
-    const int followed = &mode == &found.strongest() ? 0 : followed_multiple(found, mode.pole.frequency_hz());
+    const int followed = followed_multiple(found, mode.pole.frequency_hz());
     if (base == found.modes.end() && followed == 0) {
       kept.push_back(mode);
       continue;
@@ -293,8 +291,9 @@ VectorXd line_powers(const MatrixXd& samples, double interval, double from_hz, d
   return lines_between(samples.transpose(), first, last - first + 1).cwiseAbs2().colwise().sum().transpose();
 }
 
-}  // namespace
-
+/// Over lines within 15 % of its frequency, three at least to either side, and its first three time
+/// constants, for what random forces or drafts move later is no part of the decay. The noise is the broadband
+/// noise of the channels (defects.hpp).
 ResidualAtMode residual_at_strongest(const RecordModes& found) {
   constexpr double beside = 0.15, time_constants = 3.0;
   const ModeEstimate& mode = found.strongest();
@@ -314,6 +313,8 @@ ResidualAtMode residual_at_strongest(const RecordModes& found) {
   return {std::sqrt(of_left.sum() / of_motion.sum()),
           of_left.sum() / std::max(white * static_cast<double>(of_left.size()), 1e-300)};
 }
+
+}  // namespace
 
 void object_to_decay(const Record& whole, RecordModes& found) {
   constexpr double least_loss = 0.05, most_left = 0.2;
@@ -355,21 +356,21 @@ void object_to_decay(const Record& whole, RecordModes& found) {
                     found.record.time[0], advice));
     return;
   }
-  const ResidualAtMode at_mode = residual_at_strongest(found);
+  found.at_strongest = residual_at_strongest(found);
   if (motion_goes_on(found))
     object(
         "no_decay",
         fmt::format("The motion goes on: the modes do not explain {:.2g} % of it, at their own frequencies "
                     "and to the end, which no decay does. {}",
                     100.0 * left, advice));
-  else if (at_mode.exceeds(most_left))
+  else if (found.at_strongest.exceeds(most_left))
     object(
         "unexplained_motion",
         fmt::format("The modes do not explain {:.2g} % of the motion about {:.4g} Hz, {:.3g} times the noise "
                     "there: frequency or damping ratio follow the amplitude, a mode nearby was missed, or "
                     "something still moves the structure. {}",
-                    100.0 * at_mode.share, f, std::sqrt(at_mode.over_noise), advice),
-        at_mode.share, most_left);
+                    100.0 * found.at_strongest.share, f, std::sqrt(found.at_strongest.over_noise), advice),
+        found.at_strongest.share, most_left);
   // What dies out and decaying modes reproduce for the most part is a decay, whatever goes on beside it.
   found.decays = found.decays || dies;
 }

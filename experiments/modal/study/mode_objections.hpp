@@ -34,26 +34,11 @@ int followed_multiple(const RecordModes& found, double frequency_hz);
 
 // What contradicts a free decay.
 
-struct ResidualAtMode {
-  double share = 0.0;       ///< root of its power over that of the motion
-  double over_noise = 0.0;  ///< its power over that of the noise
-
-  /// Beyond a share and nine times the noise.
-  bool exceeds(double least_share) const { return share > least_share && over_noise > 9.0; }
-};
-
-/// How much of the motion about the strongest mode decaying modes do not explain: over lines within 15 % of
-/// its frequency, three at least to either side, and its first three time constants, for what random forces
-/// or drafts move later is no part of the decay. The noise is the broadband noise of the channels
-/// (defects.hpp).
-/// @param found with one mode at least
-ResidualAtMode residual_at_strongest(const RecordModes& found);
-
 /// `no_decay` where the motion does not decay, goes on to the end, or was not released; else
 /// `unexplained_motion` where decaying modes do not explain a fifth of the motion about the strongest mode,
 /// which is nine times the power of the noise there: of noise and linear modes neither occurs. Then
 /// found.decays is false, unless the modes explain all but 30 % of a motion that was there from its release
-/// and dies out.
+/// and dies out. Sets found.at_strongest, of a record that was released and decays.
 /// @param whole the record before its window was chosen
 void object_to_decay(const Record& whole, RecordModes& found);
 

@@ -89,10 +89,7 @@ bool is_level_4(std::string_view beginning) {
   constexpr std::size_t sizes = 20, longest_name = 64, precisions = 6;
   if (beginning.size() < sizes) return false;
   const auto number = [&](std::size_t place, bool swapped) {
-    std::uint32_t value = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-      value = value << 8 | static_cast<unsigned char>(beginning[4 * place + (swapped ? k : 3 - k)]);
-    return value;
+    return number_of_bytes<std::uint32_t>(beginning.data() + 4 * place, swapped);
   };
   for (const bool swapped : {false, true}) {
     const std::uint32_t order = swapped ? 1000 : 0, type = number(0, swapped) - order,

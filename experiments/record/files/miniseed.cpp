@@ -16,6 +16,7 @@
 
 #include <needed_library.hpp>
 #include "experiments/record/read_apart.hpp"
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/record/stamps.hpp"
 #include "experiments/record/units.hpp"
@@ -42,7 +43,36 @@ std::string name_of_trace(const MSTrace& trace) {
                      trace.location, trace.channel);
 }
 
-/// Every channel on one grid of instants; what is missing between its traces is NaN.
+/// Successive samples of one channel.
+struct Segment {
+  std::string name, unit;
+  double start = 0.0;  ///< behind an instant that is common to all [s]
+  std::vector<double> values;
+};
+
+/// Every channel on one grid of instants; what is missing between its segments is NaN.
+void add_on_one_grid(const std::vector<Segment>& segments, double rate, int digits,
+                     CollectedSignals& signals) {
+  const double start = std::ranges::min(segments, {}, &Segment::start).start;
+  const auto place = [&](const Segment& one) {  // years apart in a damaged file
+    return static_cast<std::size_t>(std::min((one.start - start) * rate + 0.5, 1e15));
+  };
+  std::size_t length = 0;
+  for (const Segment& one : segments) length = std::max(length, place(one) + one.values.size());
+  std::map<std::string, CollectedSignals::Signal> channels;
+  for (const Segment& one : segments) {
+    const auto [channel, added] = channels.try_emplace(one.name);
+    if (added) {
+      signals.announce(one.name, {length});
+      channel->second = {one.name, one.unit,
+                         std::vector<double>(length, std::numeric_limits<double>::quiet_NaN()), digits};
+    }
+    std::ranges::copy(one.values, channel->second.values.begin() + static_cast<std::ptrdiff_t>(place(one)));
+  }
+  for (auto& [name, signal] : channels) signals.add(name, signal.unit, std::move(signal.values), digits);
+  signals.set("sample_rate", rate);
+}
+
 void collect_traces(CollectedSignals& signals) {
   MSTraceGroup* group = nullptr;
   const int failure = ms_readtraces(&group, signals.file().c_str(), -1, -1.0, -1.0, 0, 1, 1, 0);
@@ -53,7 +83,7 @@ void collect_traces(CollectedSignals& signals) {
     throw refuse(fmt::format("no MiniSEED that libmseed reads ({})", ms_errorstr(failure)),
                  "records of samples");
   double rate = 0.0;
-  hptime_t start = std::numeric_limits<hptime_t>::max(), end = std::numeric_limits<hptime_t>::min();
+  std::vector<Segment> segments;
   for (MSTrace* trace = group->traces; trace != nullptr; trace = trace->next) {
     if (trace->numsamples <= 0) continue;
     if (!(trace->samprate > 0.0) || mst_convertsamples(trace, 'd', 0) != 0)
@@ -61,31 +91,16 @@ void collect_traces(CollectedSignals& signals) {
     if (rate == 0.0) rate = trace->samprate;
     if (std::abs(trace->samprate / rate - 1.0) > 1e-4)
       throw refuse(fmt::format("channels at {:g} and {:g} Hz", rate, trace->samprate), "one rate in a file");
-    start = std::min(start, trace->starttime);
-    end = std::max(end, trace->endtime);
-  }
-  if (rate == 0.0) throw refuse("no samples", "records of samples");
-  const auto place = [&](hptime_t instant) {  // years apart in a damaged file
-    const auto apart =
-        static_cast<double>(static_cast<std::uint64_t>(instant) - static_cast<std::uint64_t>(start));
-    return static_cast<std::size_t>(std::min(apart / static_cast<double>(HPTMODULUS) * rate + 0.5, 1e15));
-  };
-  const std::size_t length = place(end) + 1;
-  std::map<std::string, std::vector<double>> channels;
-  for (MSTrace* trace = group->traces; trace != nullptr; trace = trace->next) {
-    if (trace->numsamples <= 0) continue;
-    const auto [channel, added] = channels.try_emplace(name_of_trace(*trace));
-    if (added) {
-      signals.announce(channel->first, {length});
-      channel->second.assign(length, std::numeric_limits<double>::quiet_NaN());
-    }
-    const std::size_t from = place(trace->starttime);
+    const auto apart = static_cast<double>(static_cast<std::int64_t>(
+        static_cast<std::uint64_t>(trace->starttime) - static_cast<std::uint64_t>(group->traces->starttime)));
     const auto* const samples = static_cast<const double*>(trace->datasamples);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(trace->numsamples) && from + k < length; ++k)
-      channel->second[from + k] = samples[k];
+    segments.push_back({name_of_trace(*trace),
+                        "",
+                        apart / static_cast<double>(HPTMODULUS),
+                        {samples, samples + trace->numsamples}});
   }
-  for (auto& [name, values] : channels) signals.add(name, "", std::move(values), 15);
-  signals.set("sample_rate", rate);
+  if (segments.empty()) throw refuse("no samples", "records of samples");
+  add_on_one_grid(segments, rate, 15, signals);
 }
 
 constexpr std::string_view text_beginning = "TIMESERIES ";
@@ -97,11 +112,6 @@ void collect_text(std::istream& lines, CollectedSignals& signals) {
   static const std::regex form(
       "TIMESERIES ([^,]*), *([0-9]{1,9}) samples, *([-+.0-9eE]+) sps, *([^,]*), *(SLIST|TSPAIR), *[^,]*(?:, "
       "*(.*))?");
-  struct Segment {
-    std::string name, unit;
-    double start = 0.0;
-    std::vector<double> values;
-  };
   const auto refuse = [&](std::size_t line, const std::string& found, const std::string& expected) {
     return InputError({signals.file(), line, 0}, found + "; expected " + expected);
   };
@@ -130,12 +140,12 @@ void collect_text(std::istream& lines, CollectedSignals& signals) {
       signals.announce(match[1], {count});
       const std::string unit = folded(match[6].str()), name = match[1];
       const std::size_t end = name.rfind('_'), from = end == 0 ? 0 : name.rfind('_', end - 1);
-      const bool knows = stated_unit(unit).has_value();
-      segments.push_back({(knows || end == std::string::npos || from == std::string::npos
+      const bool has_unit = stated_unit(unit).has_value();
+      segments.push_back({(has_unit || end == std::string::npos || from == std::string::npos
                                ? ""
                                : quantity_of(std::string_view(name).substr(from + 1, end - from - 1))) +
                               name,
-                          knows ? unit : "",
+                          has_unit ? unit : "",
                           stamp->seconds,
                           {}});
       continue;
@@ -150,25 +160,7 @@ void collect_text(std::istream& lines, CollectedSignals& signals) {
     }
   }
   finish();
-  double start = segments.front().start, last = start;
-  for (const Segment& one : segments) {
-    start = std::min(start, one.start);
-    last = std::max(last, one.start + static_cast<double>(one.values.size()) / rate);
-  }
-  const auto length = static_cast<std::size_t>(std::min((last - start) * rate + 0.5, 1e15));
-  std::map<std::string, std::pair<std::string, std::vector<double>>> channels;
-  for (const Segment& one : segments) {
-    const auto [channel, added] = channels.try_emplace(one.name);
-    if (added) {
-      signals.announce(one.name, {length});
-      channel->second = {one.unit, std::vector<double>(length, std::numeric_limits<double>::quiet_NaN())};
-    }
-    const auto from = static_cast<std::size_t>((one.start - start) * rate + 0.5);
-    for (std::size_t k = 0; k < one.values.size() && from + k < length; ++k)
-      channel->second.second[from + k] = one.values[k];
-  }
-  for (auto& [name, found] : channels) signals.add(name, found.first, std::move(found.second), 9);
-  signals.set("sample_rate", rate);
+  add_on_one_grid(segments, rate, 9, signals);
 }
 
 class MiniSeedReader final : public RecordReader {
