@@ -56,43 +56,6 @@ double size_of_reading(std::string_view unit) {
   return unit == "mV" ? 1e-3 : unit == "uV" ? 1e-6 : 1.0;
 }
 
-constexpr double fastest = 5e-6;  // [s], of 200 kHz
-
-bool is_plausible(double step, double taken) {
-  const bool by_size = taken != 1.0, of_days = taken == 86400.0;
-  return !(step > 0.0) || of_days || (step * taken < (by_size ? 0.5 : 0.1) && step * taken > fastest);
-}
-
-// Times of no stated unit whose rate would be below 10 Hz or above 200 kHz, were they in units of `taken`
-// [s]: most are in another.
-// @throws InputError the question
-void require_plausible_step(const RecordTable& table, std::size_t index, double taken) {
-  constexpr double largest = 20.0;  // [s]
-  const double step = mean_step(table.columns[index]);
-  constexpr double alike = 0.02;
-  const bool as_stated = table.stated_rate && std::abs(step * taken * *table.stated_rate - 1.0) < alike;
-  if (is_plausible(step, taken) || as_stated) return;
-  const std::string name = column_name_of(table, index);
-  std::string answers;
-  for (const auto& [unit, factor] : {std::pair{"ns", 1e-9},
-                                     {"us", 1e-6},
-                                     {"ms", 1e-3},
-                                     {"s", 1.0},
-                                     {"min", 60.0},
-                                     {"h", 3600.0},
-                                     {"d", 86400.0}}) {
-    const double seconds = step * factor;
-    if (seconds < largest && seconds > fastest)
-      answers += fmt::format("{}--time {}:{} ({:.6g} Hz)", answers.empty() ? "" : ", ", index + 1, unit,
-                             1.0 / seconds);
-  }
-  throw InputError({table.file, table.header_line, 0},
-                   fmt::format("column {}{} rises by {:.6g} from row to row and states no unit; expected the "
-                               "unit of its times: {}{}record.time in the configuration",
-                               index + 1, name.empty() ? "" : " '" + name + "'", step, answers,
-                               answers.empty() ? "--rate HZ, or " : ", or "));
-}
-
 bool holds_stamps(const RecordTable& table, std::size_t index) {
   return table.cell && table.rows() > 0 && parse_stamp(unquoted(table.cell(0, index).text));
 }
@@ -116,6 +79,17 @@ bool is_direction_or_place(const std::string& name) {
       "[a-oq-z][0-9]*|ns|ew|ud|up|north|south|east|west|vert.*|.*(tip|top|mid|base|floor).*|(ch|kanal|sensor)"
       ".*");
   return std::regex_match(folded(name), form);
+}
+
+// "D0", "D0-D7", "Digital 3", with the states of lines, no reading.
+bool is_digital(const std::string& name, const std::vector<double>& values) {
+  static const std::regex form(R"((d|digital|logic|dio|dig|pod|bit)[ _-]?[0-9]+( ?[-:] ?d?[0-9]+)?)"),
+      several(".*[0-9] ?[-:] ?d?[0-9]+");
+  const std::string text = folded(name);
+  const double most = std::regex_match(text, several) ? 65535.0 : 1.0;
+  return std::regex_match(text, form) && std::ranges::all_of(values, [&](double value) {
+           return std::isnan(value) || (value >= 0.0 && value <= most && value == std::floor(value));
+         });
 }
 
 // Of columns whose names are not this project's own, what was recognised.
@@ -157,10 +131,6 @@ class Recognition {
           return other.ends_with("(txt)");  // kinds of values: text, numbers
         }))
       found->kind = RecognisedColumn::Kind::other;
-    if (holds_bits(name, table.columns[index])) found->kind = RecognisedColumn::Kind::other;
-    if (found->kind == RecognisedColumn::Kind::time && !found->states_unit && swings(table.columns[index]) &&
-        name.find_first_of("_ ") != std::string::npos)
-      found->kind = RecognisedColumn::Kind::signal, found->quantity = Quantity::acceleration;
     if ((name == "U" || name == "u") && named("n") && named("e"))  // up
       found->quantity = Quantity::acceleration, found->states_quantity = false;
     const auto add = [&](std::string& list) {
@@ -182,11 +152,21 @@ class Recognition {
         add(other_);
       return true;
     }
+    if (found->kind == RecognisedColumn::Kind::time && !found->states_unit && swings(values))
+      found->kind = RecognisedColumn::Kind::signal, found->states_quantity = false;
+    if (found->kind == RecognisedColumn::Kind::signal &&
+        (is_digital(name, values) || (named("sdn") && (name == "Q" || name == "ns"))))
+      found->kind = RecognisedColumn::Kind::other;
     if (index > 0 && table.width() > 2 && found->kind == RecognisedColumn::Kind::signal &&
         counts_rows(values))
       found->kind = RecognisedColumn::Kind::count;
-    if (index == 0 && found->kind == RecognisedColumn::Kind::signal && !found->states_quantity &&
-        !found->states_unit && runs_evenly(values)) {  // no motion does
+    const bool of_matrix = name.ends_with("(:,1)") || name.ends_with("(1,:)") || name.ends_with("[:,0]");
+    const bool unstated = found->kind == RecognisedColumn::Kind::signal && !found->states_unit;
+    constexpr std::size_t long_enough = 100;
+    if (index > 0 && unstated && values.size() > long_enough && runs_evenly(values))
+      found->kind = RecognisedColumn::Kind::other;  // an axis of something else
+    if (index == 0 && unstated && (!found->states_quantity || of_matrix) &&
+        runs_evenly(values)) {  // no motion does
       if (counts_samples(values))
         counted_ = counted_.value_or(index);
       else
@@ -412,7 +392,11 @@ RecordColumns columns_of_header(RecordTable& table, bool stamped) {
   Recognition recognition(table, stamped);
   for (std::size_t index = 0; index < table.width(); ++index) {
     if (table.time == index) continue;
-    const auto meaning = stated_meaning(table, index);
+    auto meaning = stated_meaning(table, index);
+    if (table.by_people && meaning && meaning->quantity && !parse_column_name(table.names[index]))
+      if (const auto named = recognise_column(table.names[index], "");
+          named && named->kind == RecognisedColumn::Kind::other)
+        meaning.reset();  // the speed of a car, in m/s
     if (!meaning && table.by_people && recognition.take(table, index, columns)) continue;
     if (!meaning && table.units.empty())
       throw InputError(header, fmt::format("unknown column '{}'; expected names with units ({}), or {}",

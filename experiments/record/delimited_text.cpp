@@ -4,6 +4,8 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,6 +33,31 @@ bool is_row(const std::vector<std::string_view>& fields, bool with_gaps) {
     read = read || reading;
   }
   return read;
+}
+
+bool is_key_and_value(const std::vector<std::string_view>& fields) {
+  static const std::set<std::string> keys{
+      "device",        "units",          "unit",           "range",
+      "gain",          "serialnumber",   "serial",         "sn",
+      "date",          "start",          "starttime",      "startdate",
+      "end",           "endtime",        "model",          "sensor",
+      "operator",      "channels",       "samples",        "version",
+      "firmware",      "file",           "filename",       "project",
+      "comment",       "comments",       "notes",          "note",
+      "test",          "testname",       "location",       "sensitivity",
+      "scale",         "mode",           "name",           "title",
+      "station",       "instrument",     "duration",       "numberofsamples",
+      "samplecount",   "points",         "deviceid",       "measurement",
+      "datetime",      "created",        "author",         "customer",
+      "messbereich",   "einheit",        "datum",          "name",
+      "modell",        "sensortype",     "type",           "bandwidth",
+      "resolution",    "filter",         "fullscale",      "recordlength",
+      "verticalscale", "verticaloffset", "horizontalscale"};
+  if (fields.size() != 2 || is_reading(fields[0]) || fields[0].empty()) return false;
+  std::string name = folded(unquoted(fields[0]).substr(0, unquoted(fields[0]).find_first_of("[(")));
+  if (sampling_name(name) != SamplingName::none && is_reading(fields[1])) return true;
+  std::erase_if(name, [](char c) { return c == ' ' || c == '_' || c == '-' || c == ':' || c == '.'; });
+  return keys.contains(name);
 }
 
 std::string_view line_near(std::string_view text, double place) {
@@ -118,6 +145,54 @@ void DelimitedText::split_row() {
   if (all.size() == width_) fields_ = std::move(all);
 }
 
+// Of a tolerant walk.
+void DelimitedText::find_rows() {
+  const std::string_view whole = rest_;
+  for (const bool strict : {true, false}) {
+    rest_ = whole, line_number_ = 0;
+    std::vector<EarlyLine> before;
+    while (next_row()) {
+      split(line_);
+      const bool row = strict ? is_row(fields_, false) : holds_number(fields_);
+      before.push_back({line_, line_number_, fields_.size(), row});
+      if (before.size() < 2) continue;
+      const EarlyLine& last = before.back();
+      const EarlyLine& first = before[before.size() - 2];
+      if (!last.rows || !first.rows || last.width != first.width) continue;
+
+      go_back_to(first, whole);
+      choose_separator();
+      before.resize(before.size() - 2);
+      const auto names_width = [&](const EarlyLine& line) {
+        split_fields(line.text, separator_, fields_);
+        return fields_.size() == width_ && !holds_number(fields_) && !holds_number(fields_, ',');
+      };
+      while (!before.empty() && !names_width(before.back())) {
+        skipped_.insert(skipped_.begin(), before.back().number);
+        before.pop_back();
+      }
+      if (before.empty())
+        skipped_.clear();  // no names: what stands before the rows is a header of another kind
+      const bool two = before.size() > 1 && names_width(before[before.size() - 2]);
+      if (two) split_fields(before.back().text, separator_, fields_);
+      if (two && !names_columns(fields_)) {
+        for (const std::string_view field : fields_) units_.emplace_back(unquoted(field));
+        before.pop_back();
+      }
+      if (!before.empty()) {
+        header_line_ = before.back().number;
+        name_columns(before.back().text, header_line_);
+      } else {
+        take_comment();
+      }
+      split_row();
+      return;
+    }
+  }
+  throw InputError({file_, 0, 0},
+                   "no two rows of numbers in succession; expected rows of numbers in columns");
+}
+
 bool DelimitedText::next_line() {
   if (rest_.empty()) return false;
   line_ = take_line(rest_);
@@ -152,7 +227,8 @@ bool DelimitedText::only_words_follow() const {
   std::size_t lines = 0;
   do {
     split_fields(ahead.line_, separator_, ahead.fields_);
-    if (holds_reading(ahead.fields_)) return false;
+    if (holds_reading(ahead.fields_) && !is_statement(ahead.line_) && !is_key_and_value(ahead.fields_))
+      return false;
   } while (++lines < most_early_lines && ahead.next_row());
   return true;
 }

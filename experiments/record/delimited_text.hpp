@@ -22,6 +22,8 @@ bool is_reading(std::string_view field);
 bool holds_reading(const std::vector<std::string_view>& fields);
 /// Whether all are, or, with gaps, say that nothing was read: one at least is.
 bool is_row(const std::vector<std::string_view>& fields, bool with_gaps);
+/// Two cells, a key and its value: "Sample Rate,1000", "Gain,2.0", "Units,g".
+bool is_key_and_value(const std::vector<std::string_view>& fields);
 
 /// The first line that is not blank behind a place of the text, 0 to 1: where its rows are.
 std::string_view line_near(std::string_view text, double place);
@@ -135,6 +137,8 @@ class DelimitedText {
   void take_comment();                 ///< as names, where one names the columns
   void name_columns(std::string_view header, std::size_t line);
   std::vector<std::string_view> named(std::string_view line, std::size_t width) const;  ///< its fields
+  /// With a date and a time below its first name, as receivers of GNSS write them.
+  std::vector<std::string_view> named_with_date(std::string_view line) const;
   bool is_comment(std::string_view content) const;
   std::string_view words_of_comment(std::string_view comment) const;
   bool only_words_follow() const;  ///< from this line on
@@ -157,6 +161,16 @@ class DelimitedText {
 /// Stamps parted from their rows, labels joined with their numbers, words beside numbers blanked, one of
 /// several sensors kept (written_text.cpp). @throws InputError where none of these measures accelerations
 void bring_to_fields(const std::string& file, const RecordFormat& format, std::string& text);
+
+/// A text in Windows-1251, by its words of Cyrillic letters, becomes UTF-8.
+void bring_to_utf8(std::string& text);
+
+/// A few long lines, a channel each, become columns. @returns whether they were such
+bool turn_lines_to_columns(std::string& text);
+
+/// Times from parts of a clock in columns of their own, blocks of rows side by side, names of solutions of
+/// GNSS that have none (record_table.cpp). @throws InputError where blocks have other times than the first
+void bring_in_order(RecordTable& table);
 
 /// The columns of a delimited text, dates and times of day as numbers of seconds.
 /// @param file for messages. @throws InputError at a row, or where there is none.

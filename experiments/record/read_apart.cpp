@@ -156,8 +156,12 @@ void limit(__rlimit_resource resource, std::size_t soft, std::size_t hard) {
 
 void send(const CollectedSignals& signals, const PipeSender& out) {
   out.number(ApartOutcome::found);
-  out.number(signals.interval());
-  out.text(signals.interval_name());
+  out.number(signals.statements().size());
+  for (const CollectedSignals::Statement& one : signals.statements()) {
+    out.text(one.name);
+    out.number(one.interval);
+    out.text(one.unit);
+  }
   out.number(signals.signals().size());
   for (const CollectedSignals::Signal& signal : signals.signals()) {
     out.text(signal.name);
@@ -170,11 +174,14 @@ void send(const CollectedSignals& signals, const PipeSender& out) {
 
 /// @returns false where what comes is not whole.
 bool receive(PipeReceiver& in, const ReadingLimits& limits, CollectedSignals& signals) {
-  double interval = 0.0;
-  std::string interval_name;
-  std::size_t count = 0;
-  if (!in.number(interval) || !in.text(interval_name) || !in.number(count)) return false;
-  if (interval > 0) signals.set_interval(interval_name, interval);
+  std::size_t statements = 0, count = 0;
+  if (!in.number(statements)) return false;
+  for (std::size_t k = 0; k < statements; ++k) {
+    CollectedSignals::Statement one;
+    if (!in.text(one.name) || !in.number(one.interval) || !in.text(one.unit)) return false;
+    signals.add_statement(std::move(one));
+  }
+  if (!in.number(count)) return false;
   for (std::size_t k = 0; k < count; ++k) {
     CollectedSignals::Signal signal;
     std::size_t size = 0;

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -25,6 +24,13 @@ class CollectedSignals {
     std::string name, unit;
     std::vector<double> values;
     int digits = 15;
+  };
+
+  /// What a number or a text beside the signals states of those in its group, struct or variable.
+  struct Statement {
+    std::string name;
+    double interval = 0.0;  ///< [s]; 0: it states a unit
+    std::string unit = {};
   };
 
   /// @param most_numbers that the file may hold in all (read_apart.hpp).
@@ -52,21 +58,19 @@ class CollectedSignals {
   /// @returns whether it is one of them.
   bool set(const std::string& name, double value);
 
-  /// A text beside the numbers: a unit where its name says so ("units", "acc_unit"), else of no use. That of
-  /// "data.units" is of the one other variable of `data` that is no time.
-  void set_text(const std::string& name, const std::string& text);
-
-  /// Gives the signals that state no unit those of the texts. To be called behind all numbers.
-  void take_units();
+  /// A text: a unit where it is called units, y_unit or acc_unit, a rate where fs or the like; else of no
+  /// use.
+  void add_text(const std::string& name, const std::string& text);
 
   /// What set() made of a number. @param interval [s]
-  void set_interval(std::string name, double interval) {
-    interval_name_ = std::move(name), interval_ = interval;
-  }
+  void set_interval(std::string name, double interval) { add_statement({std::move(name), interval}); }
+
+  void add_statement(Statement one) { statements_.push_back(std::move(one)); }
 
   /// Times are in the unit that their signal states, by its name or beside it, and in seconds where it states
   /// none, which a remark then states. Where no signal states quantity and unit, names are recognised as
-  /// people write them.
+  /// people write them. A stated interval or unit holds for the signals of the innermost group around it; a
+  /// number called "rate" alone, which may be that of a shaft, gives way to any other.
   /// @throws InputError when there is no signal of at least two samples, or when times and a stated interval
   /// contradict each other or times are in another unit, unless the format states them itself.
   RecordTable table(const RecordFormat& format) const;
@@ -76,19 +80,19 @@ class CollectedSignals {
 
   const std::string& file() const { return file_; }
   const std::vector<Signal>& signals() const { return signals_; }
-  double interval() const { return interval_; }                        ///< [s]; 0: none stated
-  const std::string& interval_name() const { return interval_name_; }  ///< of the number that stated it
+  const std::vector<Statement>& statements() const { return statements_; }
 
  private:
+  const Statement* interval_for(const std::string& signal, bool asked) const;
+  const Statement* interval_of(const RecordTable& table, bool asked) const;
+  std::string unit_for(const Signal& signal) const;
   void find_time(RecordTable& table, const RecordFormat& format) const;
 
   std::string file_;
   std::size_t most_numbers_;
   double announced_ = 0.0;
   std::vector<Signal> signals_;
-  std::vector<std::pair<std::string, std::string>> unit_texts_;  ///< of what, unit
-  double interval_ = 0.0;
-  std::string interval_name_;
+  std::vector<Statement> statements_;
 };
 
 /// What reading a file may take.

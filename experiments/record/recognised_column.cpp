@@ -64,12 +64,13 @@ bool any_word(const std::vector<std::string>& words, const std::set<std::string>
 }
 
 const std::set<std::string> times{
-    "t",       "time",      "stamp",    "times",   "timestamp", "zeit",     "zeitstempel", "temps",
-    "tiempo",  "tempo",     "seconds",  "secs",    "elapsed",   "sekunden", "secondes",    "segundos",
-    "secondi", "date",      "datetime", "datum",   "fecha",     "uhrzeit",  "epoch",       "unix",
-    "second",  "sec",       "sekunde",  "seconde", "segundo",   "secondo",  "hora",        "heure",
-    "ora",     "tijd",      "tid",      "aika",    "czas",      "时间",     "時間",        "時刻",
-    "время",   "zeitpunkt", "uptime",   "ts",      "ticks",     "laufzeit", "tow",         "timer"};
+    "t",         "time",     "stamp",   "times",   "timestamp", "zeit",    "zeitstempel",
+    "temps",     "tiempo",   "tempo",   "seconds", "secs",      "elapsed", "sekunden",
+    "secondes",  "segundos", "secondi", "date",    "datetime",  "datum",   "fecha",
+    "uhrzeit",   "epoch",    "unix",    "second",  "sec",       "sekunde", "seconde",
+    "segundo",   "secondo",  "hora",    "heure",   "ora",       "tijd",    "tid",
+    "aika",      "czas",     "时间",    "時間",    "時刻",      "время",   "Время",
+    "zeitpunkt", "uptime",   "ts",      "ticks",   "laufzeit",  "tow",     "timer"};
 // Time, and its unit [s].
 const std::vector<std::pair<std::string_view, double>> clocks{
     {"millis", 1e-3},        {"milliseconds", 1e-3}, {"msec", 1e-3},          {"micros", 1e-6},
@@ -85,16 +86,21 @@ const std::set<std::string> counts{"sample",      "samples",  "index",   "idx", 
                                    "echantillon", "campione", "amostra", "nummer",        "number",
                                    "point"};
 const std::set<std::string> no_motion{
-    "euler",    "roll",         "pitch",    "yaw",        "gyr",    "gyro",        "gyroscope",  "mag",
-    "magnet",   "magnetometer", "quat",     "quaternion", "temp",   "temperature", "temperatur", "heading",
-    "azimuth",  "battery",      "pressure", "humidity",   "status", "light",       "sound",      "altitude",
-    "latitude", "longitude",    "gps",      "proximity",  "druck",  "feuchte",     "helligkeit", "current",
-    "rpm",      "weight",       "gewicht",  "batt",       "vbat",   "vbatt",       "ptemp",      "utc",
-    "speed",    "lat",          "lon",      "lng",        "label",  "state",       "gmt",        "rotation",
-    "moment",   "torque",       "rssi",     "trigger",    "trig",   "flag",        "flags",      "valid",
-    "quality",  "steps",        "heart",    "accuracy",   "tacho",  "crc",         "checksum",   "marker",
-    "event",    "events",       "mic",      "micl",       "exg",    "emg",         "ecg",        "eeg",
-    "eog",      "ppg",          "gsr",      "eda",        "spo2"};
+    "euler",       "roll",        "pitch",        "yaw",      "gyr",        "gyro",     "gyroscope",
+    "mag",         "magnet",      "magnetometer", "quat",     "quaternion", "temp",     "temperature",
+    "temperatur",  "heading",     "azimuth",      "battery",  "pressure",   "humidity", "status",
+    "light",       "sound",       "altitude",     "latitude", "longitude",  "gps",      "proximity",
+    "druck",       "feuchte",     "helligkeit",   "current",  "rpm",        "weight",   "gewicht",
+    "batt",        "vbat",        "vbatt",        "ptemp",    "utc",        "speed",    "lat",
+    "lon",         "lng",         "label",        "state",    "gmt",        "rotation", "moment",
+    "torque",      "rssi",        "trigger",      "trig",     "flag",       "flags",    "valid",
+    "quality",     "steps",       "heart",        "accuracy", "tacho",      "crc",      "checksum",
+    "marker",      "event",       "events",       "mic",      "micl",       "exg",      "emg",
+    "ecg",         "eeg",         "eog",          "ppg",      "gsr",        "eda",      "spo2",
+    "hour",        "minute",      "millisecond",  "day",      "month",      "year",     "week",
+    "ratio",       "age",         "sdn",          "sde",      "sdu",        "sdne",     "sdeu",
+    "sdun",        "sden",        "sdnu",         "sdue",     "hdop",       "pdop",     "vdop",
+    "Температура", "температура", "Влажность",    "Давление"};
 // Of these not even with a quantity behind them: "angular_velocity".
 const std::set<std::string> no_motion_at_all{"angular",    "orientation", "gyro",     "gyroscope", "euler",
                                              "quaternion", "battery",     "rotation", "wind",      "cpu"};
@@ -114,7 +120,7 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::
     static const std::set<std::string> axes{"a",   "ax",  "ay",   "az",   "gfx",
                                             "gfy", "gfz", "accx", "accy", "accz"};
     if (axes.contains(word) ||
-        begins(word, {"acc", "beschl", "acel", "versnelling", "przysp", "ускор", "加速度"}))
+        begins(word, {"acc", "beschl", "acel", "versnelling", "przysp", "ускор", "Ускор", "加速度"}))
       return base ? Quantity::base_acceleration : Quantity::acceleration;
     if (begins(word, {"vel", "geschw", "vitesse", "veloc"}) || (word == "v" && name.find('V') == name.npos))
       return Quantity::velocity;
@@ -137,6 +143,8 @@ std::optional<StatedUnit> unit_of(const std::string& unit) {
   if (unit == "g's" || unit == "gs" || unit == "g_n" || unit == "G's" || unit == "Gs" ||
       unit == "g\xe2\x80\x99s" || unit == "G\xe2\x80\x99s")
     return StatedUnit{Quantity::acceleration, standard_gravity};
+  if (unit == "ips" || unit == "IPS") return StatedUnit{Quantity::velocity, 0.0254};
+  if (unit == "mil" || unit == "mils") return StatedUnit{Quantity::displacement, 2.54e-5};
   if (unit == "ug" || unit == "µg") return StatedUnit{Quantity::acceleration, 1e-6 * standard_gravity};
   if (unit == "gal" || unit == "Gal") return StatedUnit{Quantity::acceleration, 1e-2};
   if (unit == "m·s⁻²" || unit == "m s⁻²" || unit == "m·s-2") return StatedUnit{Quantity::acceleration, 1.0};
@@ -192,9 +200,22 @@ std::string without_brackets(std::string text) {
   return text;
 }
 
-// The micro sign for a Greek mu.
+// The micro sign for a Greek mu, and units in Cyrillic letters, in brackets or behind a comma, in Latin ones.
 std::string with_one_micro(std::string_view text) {
+  static const std::vector<std::pair<std::string_view, std::string_view>> cyrillic{
+      {"м/с2", "m/s2"},    {"м/с²", "m/s2"}, {"м/с^2", "m/s2"}, {"мм/с2", "mm/s2"}, {"мм/с²", "mm/s2"},
+      {"мм/с^2", "mm/s2"}, {"м/с", "m/s"},   {"мм/с", "mm/s"},  {"мм", "mm"},       {"мкм", "um"},
+      {"м", "m"},          {"см", "cm"},     {"с", "s"},        {"сек", "s"},       {"мс", "ms"},
+      {"мкс", "us"},       {"мин", "min"},   {"Н", "N"},        {"кН", "kN"},       {"В", "V"},
+      {"мВ", "mV"},        {"Гц", "Hz"},     {"м/с/с", "m/s2"}};
   std::string result(text);
+  const std::size_t from =
+                        result.find_last_of(",([") == std::string::npos ? 0 : result.find_last_of(",([") + 1,
+                    end = std::min(result.find_first_of(")]", from), result.size());
+  const std::string unit(trimmed(std::string_view(result).substr(from, end - from)));
+  for (const auto& [written, latin] : cyrillic)
+    if (unit == written)
+      result.replace(from, end - from, (from > 0 && result[from - 1] == ',' ? " " : "") + std::string(latin));
   for (std::size_t at; (at = result.find("\xce\xbc")) != std::string::npos;)
     result.replace(at, 2, "\xc2\xb5");
   return result;
@@ -411,12 +432,6 @@ bool names_columns(const std::vector<std::string_view>& fields) {
     named = named || !found || found->states_quantity || found->kind == RecognisedColumn::Kind::time;
   }
   return named;
-}
-
-bool holds_bits(const std::string& name, const std::vector<double>& values) {
-  static const std::regex form("(d|di|dio|din|bit|digital|logic|ttl)[ _]?[0-9]+");
-  return std::regex_match(folded(name), form) &&
-         std::ranges::all_of(values, [](double value) { return value == 0.0 || value == 1.0; });
 }
 
 }  // namespace beamid::experiments

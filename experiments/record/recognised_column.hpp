@@ -79,7 +79,4 @@ std::string folded(std::string_view text);
 /// Whether a unit is one of what is no motion: "lux", "MPa", "V".
 bool is_other_unit(std::string_view unit);
 
-/// "D0", "DI 3": a digital line, which holds 0 and 1 only.
-bool holds_bits(const std::string& name, const std::vector<double>& values);
-
 }  // namespace beamid::experiments

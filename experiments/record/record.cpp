@@ -104,6 +104,7 @@ std::optional<double> seconds_per(const std::string& unit, const std::string& wh
     letter = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;
   for (const std::string& spelling : {unit, small})
     if (const auto stated = stated_unit(spelling); stated && !stated->quantity) return stated->factor;
+  if (const auto seconds = unit_of_times(unit)) return seconds;
   if (format.time || format.sampling_rate) return std::nullopt;
   throw InputError({file}, fmt::format("{} is in '{}'; expected times in {}, or record.time or "
                                        "record.sampling_rate_hz in the configuration",

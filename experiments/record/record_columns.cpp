@@ -269,6 +269,47 @@ void keep_updates(RecordTable& table, const RecordColumns& columns) {
       "The readings of each channel are repeated over {0} rows: one row of {0} is kept.", repeats));
 }
 
+namespace {
+
+constexpr double fastest = 5e-6;  // [s], of 200 kHz
+
+}  // namespace
+
+bool is_plausible(double step, double taken) {
+  const bool by_size = taken != 1.0, of_days = taken == 86400.0;
+  return !(step > 0.0) || of_days || (step * taken < (by_size ? 0.5 : 0.1) && step * taken > fastest);
+}
+
+// Times of no stated unit whose rate would be below 10 Hz or above 200 kHz, were they in units of `taken`
+// [s]: most are in another.
+// @throws InputError the question
+void require_plausible_step(const RecordTable& table, std::size_t index, double taken) {
+  constexpr double largest = 20.0;  // [s]
+  const double step = mean_step(table.columns[index]);
+  constexpr double alike = 0.02;
+  const bool as_stated = table.stated_rate && std::abs(step * taken * *table.stated_rate - 1.0) < alike;
+  if (is_plausible(step, taken) || as_stated) return;
+  const std::string name = column_name_of(table, index);
+  std::string answers;
+  for (const auto& [unit, factor] : {std::pair{"ns", 1e-9},
+                                     {"us", 1e-6},
+                                     {"ms", 1e-3},
+                                     {"s", 1.0},
+                                     {"min", 60.0},
+                                     {"h", 3600.0},
+                                     {"d", 86400.0}}) {
+    const double seconds = step * factor;
+    if (seconds < largest && seconds > fastest)
+      answers += fmt::format("{}--time {}:{} ({:.6g} Hz)", answers.empty() ? "" : ", ", index + 1, unit,
+                             1.0 / seconds);
+  }
+  throw InputError({table.file, table.header_line, 0},
+                   fmt::format("column {}{} rises by {:.6g} from row to row and states no unit; expected the "
+                               "unit of its times: {}{}record.time in the configuration",
+                               index + 1, name.empty() ? "" : " '" + name + "'", step, answers,
+                               answers.empty() ? "--rate HZ, or " : ", or "));
+}
+
 RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   RecordColumns columns;
   // Times that are stated elsewhere need no column.

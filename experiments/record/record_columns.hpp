@@ -53,6 +53,13 @@ void find_times(RecordTable& table, RecordColumns& columns);
 /// Whether some column is named for what moves: others, of neither quantity nor unit, are something else.
 bool names_motion(const RecordTable& table);
 
+/// Whether a step of times, in units of `taken` [s], is that of a rate of 10 Hz to 200 kHz.
+bool is_plausible(double step, double taken);
+
+/// Times of no stated unit whose rate would be another, were they in units of `taken` [s]: most are in
+/// another unit. @throws InputError the question
+void require_plausible_step(const RecordTable& table, std::size_t index, double taken);
+
 /// Two columns of times, each for the channels beside it.
 /// @param time that is taken; @param is_sure whether its unit is stated; @param index of the other
 /// @throws InputError where they run at different rates, whatever their units, or over different rows

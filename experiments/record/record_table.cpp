@@ -6,11 +6,15 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <regex>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "experiments/record/delimited_text.hpp"
+#include "experiments/record/recognised_column.hpp"
 #include "experiments/record/stamps.hpp"
 #include "experiments/text/fields.hpp"
 #include "experiments/text/toml_table.hpp"
@@ -179,6 +183,167 @@ std::string skipped_text(const std::vector<std::size_t>& lines, const std::strin
   return lines.size() == 1
              ? fmt::format("1 line is omitted, as it {}: line {}.", why, places)
              : fmt::format("{} lines are omitted, as each {}: lines {}.", lines.size(), why, places);
+}
+
+// Columns of a text that belong together: parts of a clock, blocks of rows.
+
+namespace {
+
+/// Hours, minutes, seconds and parts of them in columns of their own make the times.
+void join_parts_of_clock(RecordTable& table) {
+  struct Part {
+    double seconds;
+    std::set<std::string> names;
+  };
+  static const std::vector<Part> parts{
+      {86400.0, {"day", "tag", "jour", "dia", "dd"}},
+      {3600.0, {"hour", "hours", "hr", "h", "hh", "stunde", "heure", "hora"}},
+      {60.0, {"minute", "minutes", "min", "m", "mm", "minuto"}},
+      {1.0, {"second", "seconds", "sec", "s", "ss", "sekunde", "seconde", "segundo"}},
+      {1e-3, {"millisecond", "milliseconds", "millis", "msec", "ms", "millisekunde"}},
+      {1e-6, {"microsecond", "microseconds", "micros", "usec", "us"}}};
+  if (table.time || table.names.size() != table.width() || table.rows() < 2) return;
+  std::vector<std::optional<std::size_t>> found(parts.size());
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    for (std::size_t index = table.width(); index-- > 0;)
+      if (parts[k].names.contains(folded(table.names[index]))) found[k] = index;
+  constexpr std::size_t minute = 2, second = 3, milli = 4;
+  const bool rises_alone = found[second] && rises(table.columns[*found[second]]);
+  if (!found[second] || (!found[minute] && !found[milli]) || (rises_alone && !found[milli])) return;
+  for (std::size_t k = 1; k < parts.size(); ++k)  // 61 minutes are none
+    if (found[k] && k != second)
+      for (const double value : table.columns[*found[k]])
+        if (!(value >= 0.0 && value < (k < second ? 60.0 : 1.0 / parts[k].seconds))) return;
+  std::vector<double> sum(table.rows(), 0.0);
+  PrintedPrecision precision;
+  double finest = 1.0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (!found[k]) continue;
+    const std::vector<double>& values = table.columns[*found[k]];
+    for (std::size_t row = 0; row < sum.size(); ++row) sum[row] += parts[k].seconds * values[row];
+    finest = std::min(finest, parts[k].seconds * table.precision[*found[k]].resolution(values.back()));
+  }
+  constexpr double half_a_day = 43200.0, hour = 3600.0;  // past midnight, or past the full hour
+  double passed = 0.0;
+  for (std::size_t row = 1; row < sum.size(); ++row) {
+    sum[row] += passed;
+    const double period = found[0] ? 0.0 : found[1] ? 2.0 * half_a_day : hour;
+    if (sum[row] < sum[row - 1] - 0.5 * period && period > 0.0) passed += period, sum[row] += period;
+  }
+  if (!rises(sum)) return;
+  const int decimals = std::max(0, static_cast<int>(std::lround(-std::log10(finest))));
+  precision.add(fmt::format("{:.{}f}", sum.back(), decimals));
+  std::string list;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (!found[k]) continue;
+    list += fmt::format("{}'{}'", list.empty() ? "" : ", ", table.names[*found[k]]);
+    static const char* const kept[] = {"day", "hour", "minute", "time", "millisecond", "millisecond 2"};
+    table.names[*found[k]] = kept[k];
+    if (*found[k] < table.units.size()) table.units[*found[k]].clear();
+  }
+  table.time = found[second];
+  table.columns[*table.time] = std::move(sum);
+  table.precision[*table.time] = precision;
+  table.remarks.push_back(fmt::format("The times are the sum of {}.", list));
+}
+
+/// Hours, minutes and seconds in one number, 100055.250, as receivers of GNSS write them.
+void take_clock_digits(RecordTable& table) {
+  static const std::regex clock("(.*[^a-z])?(utc|gps|gnss|hhmmss|gpst)([^a-z].*)?");
+  if (table.time || table.names.size() != table.width()) return;
+  for (std::size_t index = 0; index < table.width(); ++index) {
+    const std::vector<double>& values = table.columns[index];
+    if (!std::regex_match(folded(table.names[index]), clock) || !rises(values)) continue;
+    std::vector<double> seconds;
+    for (const double value : values) {
+      const double hours = std::floor(value / 1e4), minutes = std::floor(std::fmod(value, 1e4) / 100.0),
+                   rest = std::fmod(value, 100.0);
+      if (!(hours >= 0.0 && hours < 24.0 && minutes < 60.0 && rest < 60.0)) break;
+      seconds.push_back(3600.0 * hours + 60.0 * minutes + rest);
+    }
+    if (seconds.size() != values.size() || !runs_evenly(seconds) || values.front() < 1e4) continue;
+    table.columns[index] = std::move(seconds);
+    table.time = index;
+    table.remarks.push_back(
+        fmt::format("'{}' holds hours, minutes and seconds in one number.", table.names[index]));
+    return;
+  }
+}
+
+/// The columns of a solution of RTKLIB, which has no other names: date, time, three coordinates, quality,
+/// satellites, six deviations, age, ratio.
+void name_solution(RecordTable& table) {
+  constexpr std::size_t width = 15;
+  constexpr double angle = 1e-8;  // printed for angles, in degrees
+  if (!table.names.empty() || table.width() != width || table.time != 1) return;
+  const auto within = [&](std::size_t index, double least, double most) {
+    return std::ranges::all_of(table.columns[index], [&](double value) {
+      return value >= least && value <= most && value == std::floor(value);
+    });
+  };
+  if (!within(5, 1.0, 6.0) || !within(6, 0.0, 99.0)) return;
+  const bool angles = table.precision[2].resolution(table.columns[2].back()) < angle;
+  table.names = {"date",   "time",   "",        "",        "",        "Q",      "ns",   "sdn(m)",
+                 "sde(m)", "sdu(m)", "sdne(m)", "sdeu(m)", "sdun(m)", "age(s)", "ratio"};
+  const char* const places[2][3] = {{"e-baseline(m)", "n-baseline(m)", "u-baseline(m)"},
+                                    {"latitude(deg)", "longitude(deg)", "height(m)"}};
+  for (std::size_t k = 0; k < 3; ++k) table.names[k + 2] = places[angles ? 1 : 0][k];
+  table.remarks.emplace_back("The columns are those of a solution of RTKLIB.");
+}
+
+/// Blocks of rows parted by blank lines, as gnuplot reads them: the times begin again in each. Blocks of the
+/// same times are channels side by side. @throws InputError where their times differ
+void join_blocks(RecordTable& table) {
+  if (table.width() < 2 || table.lines.empty()) return;
+  const std::vector<double>& rising = table.columns[0];
+  std::vector<std::size_t> begins{0};
+  for (std::size_t row = 1; row < table.rows(); ++row) {
+    if (rising[row] > rising[row - 1]) continue;
+    if (table.lines[row] < table.lines[row - 1] + 2) return;
+    begins.push_back(row);
+  }
+  const std::size_t blocks = begins.size(), length = begins.size() > 1 ? begins[1] : 0;
+  constexpr std::size_t fewest = 16, most = 64;
+  if (blocks < 2 || length < fewest || blocks > most) return;
+  begins.push_back(table.rows());
+  for (std::size_t k = 0; k < blocks; ++k)
+    for (std::size_t row = begins[k]; row < begins[k + 1]; ++row)
+      if (begins[k + 1] - begins[k] != length || rising[row] != rising[row - begins[k]])
+        throw InputError(
+            {table.file, table.lines[begins[k]], 1},
+            fmt::format("the first of {} rows of block {}: blank lines part {} blocks, each with "
+                        "times of its own; expected a file for each block",
+                        begins[k + 1] - begins[k], k + 1, blocks));
+  RecordTable joined = table;
+  joined.columns.assign(1, {rising.begin(), rising.begin() + static_cast<std::ptrdiff_t>(length)});
+  joined.names.clear(), joined.units.clear(), joined.precision.assign(1, table.precision[0]);
+  const auto named = [&](std::size_t column) {
+    return column < table.names.size() ? table.names[column] : "";
+  };
+  if (!table.names.empty()) joined.names.push_back(named(0));
+  if (!table.units.empty()) joined.units.push_back(table.units[0]);
+  for (std::size_t k = 0; k < blocks; ++k)
+    for (std::size_t column = 1; column < table.width(); ++column) {
+      const auto from = table.columns[column].begin() + static_cast<std::ptrdiff_t>(begins[k]);
+      joined.columns.emplace_back(from, from + static_cast<std::ptrdiff_t>(length));
+      joined.precision.push_back(table.precision[column]);
+      if (!table.names.empty()) joined.names.push_back(named(column));
+      if (!table.units.empty())
+        joined.units.push_back(column < table.units.size() ? table.units[column] : "");
+    }
+  joined.lines.clear(), joined.cell = nullptr;
+  joined.remarks.push_back(
+      fmt::format("Blank lines part {} blocks of the same times: channels side by side.", blocks));
+  table = std::move(joined);
+}
+
+}  // namespace
+
+void bring_in_order(RecordTable& table) {
+  name_solution(table);
+  join_parts_of_clock(table);
+  take_clock_digits(table);
+  join_blocks(table);
 }
 
 namespace {

@@ -215,9 +215,10 @@ std::string printed_like(const Stamp& stamp) {
 }
 
 bool swings(const std::vector<double>& values) {
-  std::size_t falls = 0;
-  for (std::size_t k = 1; k < values.size(); ++k) falls += values[k] < values[k - 1] ? 1 : 0;
-  return 4 * falls > values.size();
+  std::size_t falls = 0, below = 0;
+  for (std::size_t k = 1; k < values.size(); ++k)
+    falls += values[k] < values[k - 1] ? 1 : 0, below += values[k] < 0.0 ? 1 : 0;
+  return 5 * falls > values.size() && 5 * below > values.size();
 }
 
 bool counts_rows(const std::vector<double>& values) {

@@ -35,7 +35,7 @@ std::string printed_like(const Stamp& stamp);
 /// One more from row to row, from wherever it begins: no sensor does.
 bool counts_rows(const std::vector<double>& values);
 
-/// Whether a quarter of its steps falls: what no clock does.
+/// Rises and falls about zero, as no clock does.
 bool swings(const std::vector<double>& values);
 
 /// 0, 1, 2, ... or 1, 2, 3, ...: samples that are counted, no times.

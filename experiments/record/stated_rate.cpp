@@ -30,6 +30,16 @@ SamplingName sampling_name(std::string_view name) {
                                            "samplingfreq",
                                            "sampfreq",
                                            "fshz",
+                                           "sfreq",
+                                           "srate",
+                                           "samplespersecond",
+                                           "samplerateinhz",
+                                           "samplingratesps",
+                                           "acquisitionrate",
+                                           "acquisitionfrequency",
+                                           "scanrate",
+                                           "datarate",
+                                           "outputdatarate",
                                            "rate"};
   static const std::set<std::string> intervals{"dt",
                                                "ts",
@@ -48,6 +58,11 @@ SamplingName sampling_name(std::string_view name) {
                                                "samplingintervals",
                                                "sampleinterval",
                                                "sampleperiod",
+                                               "dts",
+                                               "dtsec",
+                                               "sampletime",
+                                               "samplingtime",
+                                               "samplingintervalsec",
                                                "samplingperiod"};
   std::string letters;
   for (const char c : name)
@@ -152,7 +167,7 @@ std::optional<double> samples_per_second(const std::string& unit) {
 // Of one line, the rate that a word for one states, or for an interval; below 0 where it states two.
 std::optional<double> rate_of_line(const std::string& line, char decimal) {
   static const std::regex sure(
-      R"(\b(samp\w*[ _-]*(?:rate|freq\w*)|(?:samples|points) ?(?:/|per) ?sec(?:ond)?|abtast(?:rate|frequenz)|messrate|odr|fps|fs|)"
+      R"(\b(samp\w*[ _-]*(?:rate|freq\w*)|(?:samples|points) ?(?:/|per) ?sec(?:ond)?|abtast(?:rate|frequenz)|messrate|odr|fps|fs|rate(?= [0-9.]+, overflows)|)"
       R"((?:fre[cq]uen\w*|cadence|taxa|tasa|velocid?a\w*|vel\.) (?:d'echantillonnage|d'acquisition|de muestreo|)"
       R"(di campionamento|de amostragem))(?![a-z]))"),
       with_unit(

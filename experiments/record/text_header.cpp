@@ -1,6 +1,7 @@
 // Where the rows of a delimited text begin, and what names their columns.
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -230,6 +231,7 @@ void DelimitedText::Body::take_empty_cells() {
 bool DelimitedText::Body::may_name(std::size_t line) const {
   const std::string_view text = lines_[line].text;
   if (is_pair(text) && !text_.labelled_) return false;  // "Station: ABC", "Units: g"
+  if (width_ == 2 && is_key_and_value(fields_[line]) && !text_.labelled_) return false;
   const bool titles = line > 0 && is_title(trimmed(text)) && lines_[line - 1].text.find(':') != text.npos;
   return !titles && !(is_statement(text) && !text_.labelled_) && text_.named(text, width_).size() == width_ &&
          (!holds_reading(fields_[line]) || counts_columns(fields_[line]));
@@ -260,7 +262,7 @@ bool DelimitedText::Body::has_odd_line_above() const {
   const auto is_key = [](const auto& fields) { return fields.size() == 2 && !is_reading(fields[0]); };
   if (width_ == 2 &&
       std::all_of(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(first_), is_key) &&
-      !names(0))
+      (!names(0) || is_key_and_value(fields_[0])))
     return false;  // "SampleRate,100", "Gain,2.0"
   for (std::size_t k = 0; k < first_; ++k)
     if (lines_[first_ - 1].width == width_ || (may_name(k) && names(k))) return true;
@@ -341,52 +343,6 @@ bool DelimitedText::find_body() {
   return true;
 }
 
-void DelimitedText::find_rows() {
-  const std::string_view whole = rest_;
-  for (const bool strict : {true, false}) {
-    rest_ = whole, line_number_ = 0;
-    std::vector<EarlyLine> before;
-    while (next_row()) {
-      split(line_);
-      const bool row = strict ? is_row(fields_, false) : holds_number(fields_);
-      before.push_back({line_, line_number_, fields_.size(), row});
-      if (before.size() < 2) continue;
-      const EarlyLine& last = before.back();
-      const EarlyLine& first = before[before.size() - 2];
-      if (!last.rows || !first.rows || last.width != first.width) continue;
-
-      go_back_to(first, whole);
-      choose_separator();
-      before.resize(before.size() - 2);
-      const auto names_width = [&](const EarlyLine& line) {
-        split_fields(line.text, separator_, fields_);
-        return fields_.size() == width_ && !holds_number(fields_) && !holds_number(fields_, ',');
-      };
-      while (!before.empty() && !names_width(before.back())) {
-        skipped_.insert(skipped_.begin(), before.back().number);
-        before.pop_back();
-      }
-      if (before.empty())
-        skipped_.clear();  // no names: what stands before the rows is a header of another kind
-      const bool two = before.size() > 1 && names_width(before[before.size() - 2]);
-      if (two) split_fields(before.back().text, separator_, fields_);
-      if (two && !names_columns(fields_)) {
-        for (const std::string_view field : fields_) units_.emplace_back(unquoted(field));
-        before.pop_back();
-      }
-      if (!before.empty()) {
-        header_line_ = before.back().number;
-        name_columns(before.back().text, header_line_);
-      } else {
-        take_comment();
-      }
-      split_row();
-      return;
-    }
-  }
-  throw InputError({file_, 0, 0}, std::string("no two rows of numbers in succession") + rows_expected);
-}
-
 std::vector<std::string_view> DelimitedText::named(std::string_view line, std::size_t width) const {
   std::vector<std::string_view> names;
   const char chosen = separator_ == '\0' ? separator_of(line) : separator_;
@@ -402,6 +358,23 @@ std::vector<std::string_view> DelimitedText::named(std::string_view line, std::s
   return names;
 }
 
+std::vector<std::string_view> DelimitedText::named_with_date(std::string_view line) const {
+  std::vector<std::string_view> names = named(line, width_);
+  static const std::set<std::string_view> clocks{"GPST", "UTC",       "JST",     "GPS",
+                                                 "Time", "Timestamp", "Datetime"};
+  if (names.size() + 1 != width_ || !clocks.contains(names[0])) return names;
+  std::vector<std::string_view> cells;
+  split_fields(line_, separator_, cells);
+  const auto date = parse_stamp(cells[0]), time = parse_stamp(cells[1]);
+  const bool dated =
+      date && time && date->kind == Stamp::Kind::date && time->kind == Stamp::Kind::time_of_day;
+  const bool in_weeks = !dated && cells[0].size() == 4 && is_reading(cells[0]) && is_reading(cells[1]);
+  if (!dated && !in_weeks) return names;
+  names[0] = dated ? "time" : "tow [s]";
+  names.insert(names.begin(), dated ? "date" : "week");
+  return names;
+}
+
 void DelimitedText::take_comment() {
   if (comments_.empty()) return;
   std::erase_if(comments_, [&](const Comment& comment) {  // "Sample rate: 100 Hz", above one column
@@ -409,7 +382,7 @@ void DelimitedText::take_comment() {
   });
   if (comments_.empty()) return;
   const auto fitting = std::find_if(comments_.rbegin(), comments_.rend(), [&](const Comment& comment) {
-    std::vector<std::string_view> fields = named(words_of_comment(comment.text), width_);
+    std::vector<std::string_view> fields = named_with_date(words_of_comment(comment.text));
     return fields.size() == width_ && !holds_reading(fields) && names_columns(fields);
   });
   const Comment& chosen = fitting == comments_.rend() ? comments_.back() : *fitting;
@@ -419,7 +392,7 @@ void DelimitedText::take_comment() {
 void DelimitedText::name_columns(std::string_view header, std::size_t line) {
   const bool comment = !comments_.empty() && line <= comments_.back().line &&
                        std::ranges::find(comments_, line, &Comment::line) != comments_.end();
-  std::vector<std::string_view> fields = named(header, width_);
+  std::vector<std::string_view> fields = comment ? named_with_date(header) : named(header, width_);
   if (comment && (fields.size() != width_ || holds_number(fields))) {
     header_line_ = 0;
     return;

@@ -354,6 +354,15 @@ std::optional<double> convertible_unit(std::string_view spelling, std::optional<
   return factor && *factor >= wanted.smallest && *factor <= wanted.largest ? factor : std::nullopt;
 }
 
+std::optional<double> unit_of_times(std::string_view written) {
+  const std::string_view unit = trimmed(written.substr(0, written.find(" since ")));
+  if (const auto stated = stated_unit(unit))
+    return stated->quantity ? std::nullopt : std::optional(stated->factor);
+  for (const auto& [word, seconds] : {std::pair{"ns", 1e-9}, {"min", 60.0}, {"mins", 60.0}, {"h", 3600.0}})
+    if (unit == word) return seconds;
+  return unit.empty() ? std::nullopt : convertible_unit(unit, {});
+}
+
 std::string symbol_of_time(double factor) {
   return factor == 1.0       ? "s"
          : factor == 1e-3    ? "ms"

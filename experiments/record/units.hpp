@@ -69,6 +69,9 @@ struct StatedUnit {
   double factor = 1;                 ///< to the SI unit
 };
 
+/// Of times, in any spelling: "ns", "minutes", "microseconds since 2026-11-26 10:00:00" [s].
+std::optional<double> unit_of_times(std::string_view written);
+
 /// Nothing for a spelling that does not tell a quantity of a record, such as "V" or "deg".
 std::optional<StatedUnit> stated_unit(std::string_view spelling);
 

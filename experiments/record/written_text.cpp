@@ -222,7 +222,86 @@ void keep_one_sensor(const std::string& file, std::string& text) {
   }
 }
 
+/// As many cells in each of a few lines, many more than there are lines: the first of each a name, or the
+/// first line evenly rising times.
+bool are_long_lines(const std::vector<Fields>& lines) {
+  constexpr std::size_t fewest_cells = 64, most_lines = 64, fewest_times = 4;
+  if (lines.size() < 2 || lines.size() > most_lines || lines[0].size() < fewest_cells) return false;
+  if (lines[0].size() < fewest_times * lines.size()) return false;
+  const bool named = !is_reading(lines[0][0]);
+  std::vector<double> first_line;
+  for (const Fields& cells : lines) {
+    if (cells.size() != lines[0].size() || is_reading(cells[0]) == named) return false;
+    for (std::size_t k = 1; k < cells.size(); ++k)
+      if (!is_reading(cells[k])) return false;
+  }
+  for (const std::string_view cell : lines[0]) first_line.push_back(parse_number(cell).value);
+  return named || runs_evenly(first_line);
+}
+
 }  // namespace
+
+void bring_to_utf8(std::string& text) {
+  constexpr std::size_t looked_at = 20000, fewest_in_word = 4;
+  std::size_t run = 0, longest = 0, small = 0, high = 0;
+  for (std::size_t k = 0; k < std::min(text.size(), looked_at); ++k) {
+    const auto letter = static_cast<unsigned char>(text[k]);
+    if (letter < 0x80) {
+      run = 0;
+      continue;
+    }
+    if (letter < 0xC0 &&
+        std::string_view("\xA8\xB8\xB0\xB2\xB3\xB7\xB9\xAB\xBB").find(text[k]) == std::string_view::npos)
+      return;  // of UTF-8, or of another alphabet
+    ++high, small += letter >= 0xE0 ? 1 : 0;
+    longest = std::max(longest, ++run);
+  }
+  if (longest < fewest_in_word || 3 * small < 2 * high) return;
+  std::string found;
+  found.reserve(text.size() + high);
+  for (const char c : text) {
+    const auto letter = static_cast<unsigned char>(c);
+    const unsigned code = letter < 0x80    ? letter
+                          : letter >= 0xC0 ? 0x410U + (letter - 0xC0U)
+                          : letter == 0xA8 ? 0x401U
+                          : letter == 0xB8 ? 0x451U
+                          : letter == 0xB9 ? 0x2116U
+                          : letter == 0xB2 ? 0xB2U  // written for a raised two
+                                           : letter;
+    if (code < 0x80)
+      found += c;
+    else if (code < 0x800)
+      found += {static_cast<char>(0xC0 | code >> 6), static_cast<char>(0x80 | (code & 0x3F))};
+    else
+      found += {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3F)),
+                static_cast<char>(0x80 | (code & 0x3F))};
+  }
+  text = std::move(found);
+}
+
+bool turn_lines_to_columns(std::string& text) {
+  constexpr std::size_t shortest = 128, most_lines = 64;
+  if (std::min(text.find_first_of("\r\n"), text.size()) < shortest) return false;
+  std::vector<Fields> lines;
+  char separator = '\0';
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = take_line(rest);
+    if (trimmed(line).empty()) continue;
+    if (separator == '\0') separator = separator_of(line);
+    split_fields(line, separator, lines.emplace_back());
+    if (lines.size() > most_lines) return false;
+  }
+  if (!are_long_lines(lines)) return false;
+  std::string turned;
+  turned.reserve(text.size() + lines[0].size());
+  for (std::size_t cell = 0; cell < lines[0].size(); ++cell)
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      turned += lines[k][cell];
+      turned += k + 1 < lines.size() ? separator : '\n';
+    }
+  text = std::move(turned);
+  return true;
+}
 
 void bring_to_fields(const std::string& file, const RecordFormat& format, std::string& text) {
   write_minus(text);

@@ -231,8 +231,11 @@ class StampColumn {
 }  // namespace
 
 RecordTable table_of_text(const std::string& file, std::string as_read, const RecordFormat& format) {
-  constexpr std::size_t looked_at_for_a_rate = 4000, looked_at_for_a_unit = 20000;
-  const std::string beginning = as_read.substr(0, looked_at_for_a_unit);
+  constexpr std::size_t looked_at_for_a_rate = 4000, looked_at_for_a_unit = 20000, looked_at_behind = 500;
+  bring_to_utf8(as_read);
+  const bool turned = format.header_lines == 0 && turn_lines_to_columns(as_read);
+  const std::string beginning = as_read.substr(0, looked_at_for_a_unit),
+                    end = as_read.substr(as_read.size() - std::min(as_read.size(), looked_at_behind));
   const auto content = std::make_shared<std::string>(std::move(as_read));
   bring_to_fields(file, format, *content);
   DelimitedText text(file, *content, format.separator, format.header_lines, format.decimal,
@@ -281,10 +284,14 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
   const std::string_view head = std::string_view(beginning).substr(0, above);
   const std::size_t cut = as_whole_lines(beginning, looked_at_for_a_rate);
   table.stated_rate = stated_rate(beginning.substr(0, cut), text.decimal());
+  if (!table.stated_rate && !text.skipped_lines().empty() && end.size() < beginning.size())
+    table.stated_rate = stated_rate(end.substr(std::min(end.find('\n'), end.size())), text.decimal());
   take_stated_unit(table, head, !format.channels.empty());
   table.skipped_lines = text.skipped_lines();
   take_start_and_rate(table);
   add_rest_of_seconds(table);
+  bring_in_order(table);
+  if (turned) table.remarks.emplace_back("Each line of the file is a channel.");
   if (format.channels.empty() && go_on(table, head, text.short_end().size()))
     join_rows(table, text.short_end());
   if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");

@@ -71,7 +71,6 @@ class LvmLines {
 };
 
 using std::string_view;
-
 constexpr string_view end_of_header = "***End_of_Header***";
 
 LvmLines::LvmLines(std::string file, string_view text) : file_(std::move(file)), rest_(text) {
@@ -200,8 +199,6 @@ std::optional<Clock> LvmInstants::clock() const {
   return std::abs(times_.back() - last) <= 0.5 * first_->interval ? first_ : std::nullopt;
 }
 
-using std::string_view;
-
 /// Walks the lines of a measurement file and fills a table.
 class LvmFile {
  public:
@@ -281,12 +278,37 @@ class LvmFile {
       }
     }
     if (y.empty()) return;
+    keep_fastest(names, x, y);
     if (!channels_.empty() && names != channels_)
       throw lines_.bad(
           fmt::format("a segment of other channels; expected the {} of the first segment", channels_.size()));
     channels_ = names, x_ = x, y_ = y;
+    if (segments_ == 1 && !slower_.empty())
+      table_.remarks.push_back(fmt::format("Omitted, as of lower rates: {}.", slower_));
     table_.header_line = table_.header_line ? table_.header_line : lines_.number();
     rows_begun_ = true;
+  }
+
+  /// Channels of several rates stand side by side: those of the highest are kept, with their X.
+  void keep_fastest(std::vector<std::string>& names, std::vector<std::size_t>& x,
+                    std::vector<std::size_t>& y) {
+    constexpr double alike = 1.0 + 1e-9;
+    const std::vector<double> steps = segment_.intervals;
+    has_unit_cells_ = segment_.units.size() > y.size() && x.size() > 1;  // one for each X, too
+    kept_.clear(), slower_.clear();
+    if (steps.size() != y.size()) return;
+    const double fastest = *std::ranges::min_element(steps);
+    for (std::size_t k = 0; k < y.size(); ++k)
+      if (steps[k] <= alike * fastest)
+        kept_.push_back(k);
+      else
+        slower_ += fmt::format("{}'{}'", slower_.empty() ? "" : ", ", names[k]);
+    const auto pick = [&](auto& all) {
+      if (all.size() != steps.size()) return;
+      for (std::size_t k = 0; k < kept_.size(); ++k) all[k] = all[kept_[k]];
+      all.resize(kept_.size());
+    };
+    pick(x), pick(y), pick(names), pick(segment_.starts), pick(segment_.intervals);
   }
 
   void begin_rows() {
@@ -366,8 +388,7 @@ class LvmFile {
     }
     for (std::size_t k = 0; k < y_.size(); ++k) {
       table_.names.push_back(channels_[k]);
-      const std::size_t label =
-          segment_.units.size() > y_.size() && x_.size() > 1 ? y_[k] - 1 : k;  // some have a cell for each X
+      const std::size_t label = has_unit_cells_ ? y_[k] - 1 : k < kept_.size() ? kept_[k] : k;
       table_.units.push_back(label < segment_.units.size() ? segment_.units[label] : "");
       table_.columns.push_back(std::move(values_[k + 1]));
       table_.precision.push_back(precision_[k + 1]);
@@ -393,6 +414,9 @@ class LvmFile {
   RecordTable table_;
   bool rows_begun_ = false, has_x_ = false;
   std::vector<std::string> channels_;
+  std::string slower_;             ///< channels of lower rates
+  std::vector<std::size_t> kept_;  ///< channels of the file that are those of the table
+  bool has_unit_cells_ = false;
   std::vector<std::size_t> x_, y_;  ///< fields of X and of the channels
   std::vector<std::vector<double>> values_;
   std::vector<PrintedPrecision> precision_;

@@ -1,21 +1,16 @@
-// MATLAB files of level 4, 5 and 7.3, through matio, and the text that Octave saves.
+// MATLAB files of level 4, 5 and 7.3, through matio.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
-#include <optional>
-#include <sstream>
 
 #include "experiments/record/files/hdf5/handle.hpp"
 #include "experiments/record/files/matio.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
-#include "experiments/text/fields.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/toml_table.hpp"
 
@@ -83,153 +78,65 @@ std::vector<double> numbers(const matvar_t& variable, std::size_t count) {
   }
 }
 
-/// A file of level 4 begins with its first matrix: type, rows, columns, whether it is complex, and the length
-/// of its name, four bytes each, then the name.
-bool is_level_4(std::string_view beginning) {
-  constexpr std::size_t sizes = 20, longest_name = 64, precisions = 6;
-  if (beginning.size() < sizes) return false;
-  const auto number = [&](std::size_t place, bool swapped) {
-    return number_of_bytes<std::uint32_t>(beginning.data() + 4 * place, swapped);
-  };
+/// Level 4 has no words at its beginning: five numbers of 4 bytes (kind, rows, columns, whether complex,
+/// length of the name), then the name, which ends with a zero.
+bool is_level_four(std::string_view beginning) {
+  constexpr std::size_t header = 20, word = 4;
+  constexpr std::uint32_t most_kinds = 52, big_endian = 1000, longest_name = 64;
+  if (beginning.size() < header + 2) return false;
   for (const bool swapped : {false, true}) {
-    const std::uint32_t order = swapped ? 1000 : 0, type = number(0, swapped) - order,
-                        length = number(4, swapped);
-    if (type % 10 > 1 || type / 10 >= precisions || number(1, swapped) == 0 || number(2, swapped) == 0 ||
-        number(3, swapped) > 1 || length < 2 || length > longest_name || beginning.size() < sizes + length)
+    std::uint32_t numbers[5];
+    for (std::size_t k = 0; k < 5; ++k)
+      numbers[k] = number_of_bytes<std::uint32_t>(beginning.data() + word * k, swapped);
+    const auto [kind, rows, columns, complex, length] = numbers;
+    const std::uint32_t low = kind - (swapped ? big_endian : 0);
+    if (low > most_kinds || low % 10 > 2 || rows == 0 || columns == 0 || complex > 1 || length < 2 ||
+        length > longest_name || header + length > beginning.size())
       continue;
-    const std::string_view name = beginning.substr(sizes, length);
-    const bool is_name = std::ranges::all_of(
-        name.substr(0, length - 1), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-    if (is_name && name.back() == '\0') return true;
+    const std::string_view name = beginning.substr(header, length - 1);
+    if (beginning[header + length - 1] == '\0' && name.find_first_of("0123456789_") != 0 &&
+        std::ranges::all_of(name,
+                            [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)); }))
+      return true;
   }
   return false;
 }
 
-/// The letters of a text.
-std::string letters(const matvar_t& variable, std::size_t count) {
+/// Of a variable of characters in one row; empty: of another form.
+std::string text_of(const matvar_t& variable) {
+  constexpr std::size_t longest = 256;
+  if (variable.rank != 2 || variable.dims == nullptr || variable.data == nullptr || variable.dims[0] != 1 ||
+      variable.dims[1] > longest || variable.data_size <= 0)
+    return "";
+  const auto width = static_cast<std::size_t>(variable.data_size);
+  const std::size_t count = std::min(variable.nbytes / width, longest);
+  const auto* const bytes = static_cast<const unsigned char*>(variable.data);
   std::string text;
-  const std::size_t size = variable.data_size == 2 ? 2 : 1;
-  if (variable.nbytes < count * size) return text;
-  const auto* const first = static_cast<const char*>(variable.data);
-  for (std::size_t i = 0; i < count; ++i) text += first[i * size];  // the low byte of UTF-16 first
+  for (std::size_t k = 0; k < count; ++k) {
+    const unsigned letter = bytes[k * width] + (width > 1 ? 256U * bytes[k * width + 1] : 0U);
+    if (letter == 0) break;
+    if (letter < 0x80 || width == 1)
+      text += static_cast<char>(letter);
+    else if (letter < 0x800)
+      text += {static_cast<char>(0xC0 | letter >> 6), static_cast<char>(0x80 | (letter & 0x3F))};
+    else
+      text += {static_cast<char>(0xE0 | letter >> 12), static_cast<char>(0x80 | (letter >> 6 & 0x3F)),
+               static_cast<char>(0x80 | (letter & 0x3F))};
+  }
   return text;
 }
-
-/// A matrix stored column by column: a number of its own, one signal, or several.
-void add_matrix(const std::string& name, std::vector<double> values, std::size_t rows, std::size_t columns,
-                int digits, CollectedSignals& signals) {
-  if (values.size() == 1)
-    signals.set(name, values[0]);
-  else if (rows == 1 || columns == 1)
-    signals.add(name, "", std::move(values), digits);
-  else
-    signals.add_matrix(
-        [&](std::size_t k, bool is_row) {
-          return is_row ? fmt::format("{}({},:)", name, k) : fmt::format("{}(:,{})", name, k);
-        },
-        "", values, rows, columns, digits);
-}
-
-constexpr std::string_view octave_beginning = "# Created by Octave";
-
-/// "# name: acc", "# type: matrix", "# rows: 3", "# columns: 2", rows of numbers, and so on.
-class OctaveText {
- public:
-  OctaveText(const std::string& text, CollectedSignals& signals) : lines_(text), signals_(signals) {
-    std::string name, type, line;
-    while (std::getline(lines_, line)) {
-      if (const auto named = value_of(line, "name")) name = *named;
-      const auto kind = value_of(line, "type");
-      if (!kind || name.empty()) continue;
-      if (*kind == "scalar" || *kind == "float scalar") {
-        if (std::getline(lines_, line)) signals_.set(name, number(line));
-      } else if (*kind == "matrix" || *kind == "float matrix") {
-        take_matrix(name);
-      } else if (*kind == "range" || *kind == "double_range") {
-        take_range(name);
-      } else if (*kind == "string" || *kind == "sq_string") {
-        take_text(name);
-      }
-    }
-    signals_.take_units();
-  }
-
- private:
-  static std::optional<std::string> value_of(const std::string& line, const std::string& key) {
-    const std::string start = "# " + key + ": ";
-    if (!line.starts_with(start)) return {};
-    return line.substr(start.size(), line.find_last_not_of("\r ") + 1 - start.size());
-  }
-
-  static double number(const std::string& text) {
-    const std::size_t from = text.find_first_not_of(' ');
-    return from == std::string::npos ? std::nan("") : parse_number(text.substr(from)).value;
-  }
-
-  std::size_t size_of_next(const std::string& key) {
-    std::string line;
-    if (!std::getline(lines_, line)) return 0;
-    const auto stated = value_of(line, key);
-    return stated ? static_cast<std::size_t>(std::max(0.0, number(*stated))) : 0;
-  }
-
-  void take_matrix(const std::string& name) {
-    const std::size_t rows = size_of_next("rows"), columns = size_of_next("columns");
-    signals_.announce(name, {rows, columns});
-    std::vector<double> values(rows * columns);
-    for (std::size_t i = 0; i < rows; ++i)
-      for (std::size_t j = 0; j < columns; ++j) {
-        std::string field;
-        if (!(lines_ >> field))
-          throw InputError(
-              {signals_.file()},
-              fmt::format("'{}' ends in row {}; expected {} rows of {} numbers", name, i + 1, rows, columns));
-        values[i + j * rows] = parse_number(field).value;
-      }
-    add_matrix(name, std::move(values), rows, columns, 15, signals_);
-  }
-
-  void take_range(const std::string& name) {
-    std::string line;
-    std::getline(lines_, line);  // "# base, limit, increment"
-    double base = 0.0, limit = 0.0, increment = 0.0;
-    if (!(lines_ >> base >> limit >> increment) || !(increment > 0.0) || !(limit > base)) return;
-    const auto count = static_cast<std::size_t>((limit - base) / increment * (1.0 + 1e-12)) + 1;
-    signals_.announce(name, {count});
-    std::vector<double> values(count);
-    for (std::size_t k = 0; k < count; ++k) values[k] = base + increment * static_cast<double>(k);
-    signals_.add(name, "", std::move(values), 15);
-  }
-
-  void take_text(const std::string& name) {
-    std::string line;
-    if (size_of_next("elements") != 1 || size_of_next("length") == 0 || !std::getline(lines_, line)) return;
-    signals_.set_text(name, line);
-  }
-
-  std::istringstream lines_;
-  CollectedSignals& signals_;
-};
 
 class MatReader final : public RecordReader {
  public:
   bool recognises(std::string_view beginning) const override {
     return beginning.starts_with("MATLAB 5.0 MAT-file") || beginning.starts_with("MATLAB 7.3 MAT-file") ||
-           beginning.starts_with(octave_beginning) || is_level_4(beginning);
+           is_level_four(beginning);
   }
 
   RecordTable read(const std::filesystem::path& path, const RecordFormat& format) const override {
     const std::string name = path.string();
     const std::size_t size =
         count_bytes(path, "a MATLAB file");  // says in the usual words when there is none
-    std::ifstream stream = open_input(path, "a MATLAB file");
-    std::string beginning(octave_beginning.size(), ' ');
-    if (stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size())) &&
-        beginning == octave_beginning) {
-      CollectedSignals signals(name, reading_limits(size).numbers);
-      OctaveText({std::istreambuf_iterator<char>(stream), {}}, signals);
-      return signals.table(format);
-    }
     return read_apart(name, "matio", reading_limits(size), collect).table(format);
   }
 
@@ -237,14 +144,13 @@ class MatReader final : public RecordReader {
   static void collect(CollectedSignals& signals) {
     const auto file = opened(signals.file());
     while (const std::unique_ptr<matvar_t, MatioDeleter> found{Mat_VarReadNextInfo(file.get())}) {
-      const bool holds_others = found->class_type == MAT_C_STRUCT || found->class_type == MAT_C_CELL ||
-                                found->class_type == MAT_C_CHAR;
-      if (found->name == nullptr || (!is_numeric(*found) && !holds_others)) continue;
+      const bool holds_others = found->class_type == MAT_C_STRUCT || found->class_type == MAT_C_CELL;
+      const bool holds_text = found->class_type == MAT_C_CHAR;
+      if (found->name == nullptr || (!is_numeric(*found) && !holds_others && !holds_text)) continue;
       announce(*found, found->name, signals);
       Mat_VarReadDataAll(file.get(), found.get());
       add(*found, found->name, 0, signals);
     }
-    signals.take_units();
   }
 
   static std::vector<std::size_t> extent(const matvar_t& variable) {
@@ -277,7 +183,7 @@ class MatReader final : public RecordReader {
     } else if (variable.class_type == MAT_C_STRUCT) {
       add_fields(variable, name, count, depth, signals);
     } else if (variable.class_type == MAT_C_CHAR) {
-      signals.set_text(name, letters(variable, count));
+      signals.add_text(name, text_of(variable));
     } else if (is_numeric(variable)) {
       if (depth > 0) announce(variable, name, signals);
       add_numbers(variable, name, signals);
@@ -306,15 +212,23 @@ class MatReader final : public RecordReader {
     std::vector<double> values = numbers(variable, count);
     if (values.empty()) return;
     const int digits = variable.class_type == MAT_C_SINGLE ? 7 : 15;
-    add_matrix(name, std::move(values), rows, columns, digits, signals);
+    if (count == 1)
+      signals.set(name, values[0]);
+    else if (rows == 1 || columns == 1)
+      signals.add(name, "", std::move(values), digits);
+    else
+      signals.add_matrix(
+          [&](std::size_t k, bool is_row) {
+            return is_row ? fmt::format("{}({},:)", name, k) : fmt::format("{}(:,{})", name, k);
+          },
+          "", values, rows, columns, digits);
   }
 };
 
 const bool mat_registered =
     record_reader_registry().add({"mat",
-                                  "MATLAB files of level 4, 5 and 7.3, and Octave's text: vectors, columns "
-                                  "of matrices, fields of structs of "
-                                  "any depth, cells",
+                                  "MATLAB files of level 4, 5 and 7.3: vectors, columns of matrices, fields "
+                                  "of structs of any depth, cells",
                                   "",
                                   {},
                                   {},

@@ -2,15 +2,13 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <regex>
-#include <vector>
 
+#include "experiments/record/delimited_text.hpp"
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"
@@ -69,14 +67,14 @@ void add_records(RecordTable& table, std::string_view data, const std::string& h
   if (!std::regex_search(header, shape, one)) throw refuse("records in more dimensions");
   std::vector<Field> fields;
   std::size_t length = 0;
-  const std::size_t rows = std::stoull(shape[1]);
+  const std::size_t before = table.columns.size(), rows = std::stoull(shape[1]);
   for (std::sregex_iterator at(header.begin(), header.end(), field), end; at != end; ++at) {
     const std::string kind = (*at)[2];
     if ((*at)[5].length() > 0) throw refuse("records that hold arrays");
     const std::size_t size = std::stoull((*at)[3]) * (kind[1] == 'U' ? 4 : 1);
     if (const auto tick = seconds_per_unit((*at)[4].str()); kind[1] == 'M' && tick) {
       fields.push_back({length, Numbers(kind.substr(0, 1) + "i8"), tick});
-      table.time = fields.size() - 1;
+      table.time = before + fields.size() - 1;
       table.names.push_back((*at)[1]);
       table.precision.push_back(PrintedPrecision::of_digits(15));
     } else if (const Numbers numbers(kind + (*at)[3].str()); numbers.type) {
@@ -102,7 +100,8 @@ void add_records(RecordTable& table, std::string_view data, const std::string& h
   }
 }
 
-/// The columns of one array, named `name`; a number alone states the rate or the interval.
+/// The columns of one array, named `name`, behind those that are there; a number alone states the rate or the
+/// interval.
 void add_array(RecordTable& table, const std::string& bytes, const std::string& name) {
   const auto refuse = [&](const std::string& found) {
     return InputError({table.file}, (name.empty() ? "" : "'" + name + "': ") + found +
@@ -131,7 +130,16 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
   }
   const Numbers numbers(type[1].str());
   const bool text = type[1].str().find_first_of("US") == 1;
-  if (!numbers.type && text && !name.empty()) return;  // labels in an archive
+  if (!numbers.type && text && !name.empty()) {  // a unit, or labels, in an archive
+    static const std::regex unit("(?:y_?|acc_?|data_?|signal_?)?units?", std::regex::icase);
+    const std::size_t letter = type[1].str()[1] == 'U' ? 4 : 1;
+    std::string word;
+    for (std::size_t at = start + length; at < bytes.size() && bytes[at] != '\0'; at += letter)
+      word += bytes[at];
+    if (const auto known = motion_unit(word); std::regex_match(name, unit) && known)
+      table.stated_unit = known;
+    return;
+  }
   if (!numbers.type) throw refuse(fmt::format("numbers of type '{}'", type[1].str()));
   const bool by_columns = header.find("'fortran_order': True") != std::string::npos;
   const bool of_one = shape[1] == "1" && (shape[2].length() == 0 || shape[2] == "1");
@@ -160,15 +168,15 @@ void add_array(RecordTable& table, const std::string& bytes, const std::string& 
 
   const char* const data = bytes.data() + start + length;
   const bool lying = rows < width && rows <= 32;  // a row for each channel
-  const std::size_t added = lying ? rows : width;
-  table.columns.resize(added);
-  table.precision.resize(added, PrintedPrecision::of_digits(numbers.type->digits));
+  const std::size_t added = lying ? rows : width, first = table.columns.size();
+  table.columns.resize(first + added);
+  table.precision.resize(first + added, PrintedPrecision::of_digits(numbers.type->digits));
   for (std::size_t k = 0; k < added && !name.empty(); ++k)
     table.names.push_back(added > 1 ? fmt::format("{}_{}", name, k + 1) : name);
   for (std::size_t row = 0; row < rows; ++row)
     for (std::size_t column = 0; column < width; ++column) {
       const std::size_t at = by_columns ? column * rows + row : row * width + column;
-      table.columns[lying ? row : column].push_back(numbers.read(data + at * numbers.type->size));
+      table.columns[first + (lying ? row : column)].push_back(numbers.read(data + at * numbers.type->size));
     }
 }
 
@@ -191,6 +199,29 @@ std::string inflated(std::string_view compressed, std::size_t whole) {
   return bytes;
 }
 
+/// Arrays of the length that most numbers have; the others are named in a remark.
+void keep_one_length(RecordTable& table) {
+  std::map<std::size_t, std::size_t> numbers;
+  for (const std::vector<double>& column : table.columns) numbers[column.size()] += column.size();
+  if (numbers.size() < 2) return;
+  const std::size_t length =
+      std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first;
+  std::string others;
+  for (std::size_t k = table.columns.size(); k-- > 0;) {
+    if (table.columns[k].size() == length) continue;
+    others = fmt::format("{} ({}){}{}", k < table.names.size() ? table.names[k] : "", table.columns[k].size(),
+                         others.empty() ? "" : ", ", others);
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    table.columns.erase(table.columns.begin() + at), table.precision.erase(table.precision.begin() + at);
+    if (k < table.names.size()) table.names.erase(table.names.begin() + at);
+    if (table.time == k)
+      table.time.reset();
+    else if (table.time && *table.time > k)
+      --*table.time;
+  }
+  table.remarks.push_back(fmt::format("Omitted, as not of {} samples: {}.", length, others));
+}
+
 /// The entries of a zip archive, as np.savez writes it: stored or deflated, the name that of the array.
 void add_archive(RecordTable& table, const std::string& bytes) {
   constexpr std::string_view entry = "PK\x01\x02";
@@ -208,8 +239,6 @@ void add_archive(RecordTable& table, const std::string& bytes) {
   };
   const std::size_t end = bytes.rfind("PK\x05\x06");  // which says where the directory begins
   std::size_t at = end == std::string::npos ? end : number(end + 16, 4);
-  std::vector<RecordTable> parts;
-  std::map<std::size_t, std::size_t> numbers;  // of each length
   for (; at < bytes.size() && bytes.compare(at, entry.size(), entry) == 0 && at + fixed <= bytes.size();
        at += fixed + number(at + 28, 2) + number(at + 30, 2) + number(at + 32, 2)) {
     const std::string name = bytes.substr(at + fixed, number(at + 28, 2));
@@ -223,30 +252,10 @@ void add_archive(RecordTable& table, const std::string& bytes) {
     const auto* const first = reinterpret_cast<const Bytef*>(content.data());
     if (content.size() != whole || crc32(0, first, static_cast<uInt>(whole)) != number(at + 16, 4))
       throw refuse("'" + name + "' is damaged");
-    RecordTable& part = parts.emplace_back();
-    part.file = table.file, part.stated_rate = table.stated_rate;
-    add_array(part, content, name.substr(0, name.rfind(".npy")));
-    table.stated_rate = part.stated_rate;
-    std::ranges::move(part.remarks, std::back_inserter(table.remarks));
-    if (!part.columns.empty()) numbers[part.rows()] += part.rows() * part.columns.size();
+    add_array(table, content, name.substr(0, name.rfind(".npy")));
   }
-  if (numbers.empty()) throw refuse("no array");
-  const std::size_t length =
-      std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first;
-  std::string others;
-  for (RecordTable& part : parts) {
-    if (part.columns.empty()) continue;
-    if (part.rows() != length) {
-      others += fmt::format("{}'{}' ({})", others.empty() ? "" : ", ", part.names.front(), part.rows());
-      continue;
-    }
-    if (part.time && !table.time) table.time = table.columns.size() + *part.time;
-    std::ranges::move(part.columns, std::back_inserter(table.columns));
-    std::ranges::move(part.precision, std::back_inserter(table.precision));
-    std::ranges::move(part.names, std::back_inserter(table.names));
-  }
-  if (!others.empty())
-    table.remarks.push_back(fmt::format("Omitted, as not of {} samples: {}.", length, others));
+  if (table.columns.empty()) throw refuse("no array");
+  keep_one_length(table);
 }
 
 class NpyReader final : public RecordReader {

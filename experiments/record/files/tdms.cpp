@@ -158,6 +158,7 @@ class TdmsChannels {
   /// wf_increment of the channels; where none has one, numbers that sampling_name() recognises.
   void find_interval(const std::vector<const TdmsObject*>& channels, const RecordFormat& format) {
     std::string first;
+    double of_first = 0.0;  // [s]
     for (const TdmsObject* channel : channels) {
       const std::string name = "'" + name_of(*channel) + "'";
       const double increment = channel->number("wf_increment");
@@ -166,10 +167,10 @@ class TdmsChannels {
           seconds_per(channel->text("wf_xunit_string"), "the abscissa of " + name, signals_.file(), format);
       if (!unit) continue;
       const double interval = increment * *unit;
-      if (first.empty()) signals_.set_interval("wf_increment", interval), first = name;
-      if (std::abs(interval / signals_.interval() - 1.0) > 1e-9)
+      if (first.empty()) signals_.set_interval("wf_increment", interval), first = name, of_first = interval;
+      if (std::abs(interval / of_first - 1.0) > 1e-9)
         throw refuse(fmt::format("{} at intervals of {} s and {} of {} s, both of {} samples", first,
-                                 signals_.interval(), name, interval, signals_.common_length()),
+                                 of_first, name, interval, signals_.common_length()),
                      "channels of one length to have one rate");
     }
     for (const TdmsObject* channel : channels)

@@ -196,7 +196,7 @@ TEST(RecognisedRecord, ReadsStoredArchivesOfArraysAndRefusesDamagedOnes) {
   const Record record = read_record(file.path(), {});
   ASSERT_EQ(record.size(), 16);
   EXPECT_EQ(record.channels[0].name, "acc");
-  EXPECT_THAT(record.remarks, testing::Contains("Omitted, as not of 16 samples: 'meta' (3)."));
+  EXPECT_THAT(record.remarks, testing::Contains("Omitted, as not of 16 samples: meta (3)."));
   EXPECT_NEAR(record.interval(), 0.01, 1e-12);
   for (std::size_t length = 8; length + 22 < whole.size(); length += 7) {
     const TemporaryFile cut("cut.npz", whole.substr(0, length));

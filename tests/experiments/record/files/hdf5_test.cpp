@@ -63,6 +63,27 @@ TEST(Hdf5Reader, ReadsDatasetsByPathWithTheirAttributes) {
   expect_both(read_record(file.path(), format), 1e-6);
 }
 
+// Oracle: nanoseconds since 1970 at 100 Hz, which were taken for seconds; the unit and the rate of a group.
+TEST(Hdf5Reader, ReadsInstantsByTheirSizeAndAttributesOfGroups) {
+  const TemporaryFile made("group.h5", "");
+  const hid_t file = H5Fcreate(made.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t group = H5Gcreate2(file, "run", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  attribute(group, "Units", "g");
+  const hsize_t length = written_samples;
+  const hid_t line = H5Screate_simple(1, &length, nullptr);
+  std::vector<long long> instants;
+  for (long long k = 0; k < written_samples; ++k)
+    instants.push_back(1'795'687'200'000'000'000 + 10'000'000 * k);
+  const hid_t time = H5Dcreate2(group, "time", H5T_NATIVE_INT64, line, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+              acc = H5Dcreate2(group, "acc", H5T_NATIVE_DOUBLE, line, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Dwrite(time, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, instants.data());
+  H5Dwrite(acc, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values_of(first_signal).data());
+  H5Dclose(time), H5Dclose(acc), H5Sclose(line), H5Gclose(group), H5Fclose(file);
+  const Record record = read_record(made.path());
+  EXPECT_NEAR(record.interval(), 0.01, 1e-6);
+  EXPECT_NEAR(record.samples(0, 3), 9.80665 * first_signal(3), 1e-12);
+}
+
 TEST(Hdf5Reader, ReadsOrRefusesDamagedFiles) {
   const TemporaryFile whole("whole.h5", "");
   write_hdf5(whole.path());

@@ -123,13 +123,26 @@ TEST(MatReader, RefusesARateThatContradictsTheTimes) {
 
 void write_text(mat_t* file, const char* name, std::string text) {
   std::size_t size[2] = {1, text.size()};
-  matvar_t* const variable = Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, 2, size, text.data(), 0);
+  matvar_t* const variable = Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, size, text.data(), 0);
   Mat_VarWrite(file, variable, MAT_COMPRESSION_NONE);
   Mat_VarFree(variable);
 }
 
-// Oracle: what was written. A unit beside the only signal is its own; of two signals it is nobody's, unless
-// its name says whose.
+// Oracle: 9.80665 m/s2 to one g; the rate of the shaft is no rate of samples.
+TEST(MatReader, TakesUnitsAndRatesFromVariablesBeside) {
+  const TemporaryFile made("beside.mat", "");
+  mat_t* const file = Mat_CreateVer(made.path().c_str(), nullptr, MAT_FT_MAT5);
+  write_variable(file, "acc", written_samples, 1, values_of(first_signal));
+  write_variable(file, "sr", 1, 1, {100.0});
+  write_variable(file, "rate", 1, 1, {25.0});
+  write_text(file, "unit", "g");
+  Mat_Close(file);
+  const Record record = read_record(made.path());
+  EXPECT_DOUBLE_EQ(record.interval(), 0.01);
+  EXPECT_NEAR(record.samples(0, 3), 9.80665 * first_signal(3), 1e-12);
+}
+
+// Oracle: what was written. A unit whose name states a signal is that signal's; another is that of the rest.
 TEST(MatReader, TakesTheUnitsThatStandBesideTheSignals) {
   for (const bool alone : {true, false}) {
     const TemporaryFile made("units.mat", "");
@@ -142,7 +155,7 @@ TEST(MatReader, TakesTheUnitsThatStandBesideTheSignals) {
     Mat_Close(file);
     const RecordTable table = read_table(made.path(), {});
     EXPECT_THAT(table.units, testing::ElementsAreArray(alone ? std::vector<std::string>{"g"}
-                                                             : std::vector<std::string>{"", "kN"}));
+                                                             : std::vector<std::string>{"g", "kN"}));
   }
 }
 
@@ -198,7 +211,7 @@ TEST(OctaveText, IsReadWithItsRateAndUnits) {
   EXPECT_EQ(table.columns[1], second);
   EXPECT_DOUBLE_EQ(read_record(file.path()).interval(), 0.01);
   const TemporaryFile cut("cut.txt", text.substr(0, 400));
-  EXPECT_THAT(input_error_of(cut, [&] { read_table(cut.path(), {}); }), HasSubstr("'acc' ends in row"));
+  EXPECT_THAT(input_error_of(cut, [&] { read_table(cut.path(), {}); }), HasSubstr("'acc' holds"));
 }
 
 TEST(MatReader, ReadsOrRefusesDamagedFiles) {

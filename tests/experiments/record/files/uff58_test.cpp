@@ -116,15 +116,16 @@ TEST(Uff58Reader, TakesTheUnitOfTheAbscissa) {
   };
   for (const bool even : {true, false}) {
     const TemporaryFile milli("ms.uff", file_of("ms", even)), plain("s.uff", file_of("", even)),
-        other("min.uff", file_of("min", even));
+        other("deg.uff", file_of("deg", even)), minutes("min.uff", file_of("min", even));
     EXPECT_NEAR(read_record(milli.path()).interval(), 0.004, 1e-15);
     EXPECT_NEAR(read_record(plain.path()).interval(), 4.0, 1e-15);
+    EXPECT_NEAR(read_record(minutes.path()).interval(), 240.0, 1e-12);
     for (const char* unit : {"s", "SEC", "Seconds", "NONE"}) {
       const TemporaryFile old("old.uff", file_of(unit, even));
       EXPECT_NEAR(read_record(old.path()).interval(), 4.0, 1e-15) << unit;
     }
     EXPECT_EQ(input_error_of(other, [&] { read_record(other.path()); }),
-              "min.uff: the abscissa of '1:+Z' is in 'min'; expected times in s, ms, us, or record.time or "
+              "deg.uff: the abscissa of '1:+Z' is in 'deg'; expected times in s, ms, us, or record.time or "
               "record.sampling_rate_hz in the configuration");
     RecordFormat stated;
     stated.sampling_rate = 10.0;
