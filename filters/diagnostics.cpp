@@ -26,7 +26,8 @@ Whiteness whiteness_of(const VectorXd& series, Index lags) {
   const auto n = static_cast<double>(count);
   const double mean = there.select(series, 0.0).sum() / n;
   const VectorXd centred = there.select(series.array() - mean, 0.0);
-  const VectorXd present = there.cast<double>();
+  const bool all = count == series.size();
+  const VectorXd present = all ? VectorXd() : VectorXd(there.cast<double>());
   const double power = centred.squaredNorm();
   const bool usual = power > 0.0 && std::isfinite(power);
   double statistic = 0.0;
@@ -34,7 +35,8 @@ Whiteness whiteness_of(const VectorXd& series, Index lags) {
   for (Index lag = 1; lag <= lags; ++lag) {
     const Index overlap = series.size() - lag;
     if (overlap < 1) break;
-    const double pairs = present.head(overlap).dot(present.tail(overlap));
+    const double pairs =
+        all ? static_cast<double>(overlap) : present.head(overlap).dot(present.tail(overlap));
     if (pairs == 0.0) continue;
     const double r = usual ? centred.head(overlap).dot(centred.tail(overlap)) / power : 1.0;
     result.autocorrelation[lag - 1] = r;

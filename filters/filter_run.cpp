@@ -1,5 +1,7 @@
 #include "filters/filter_run.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -42,6 +44,16 @@ void store(const Correction& correction, const std::vector<Index>& observed, Ind
   result.log_likelihood += correction.log_likelihood;
 }
 
+void trace(const Gaussian& estimate, const std::vector<Index>& entries, Index step, FilterRun& result) {
+  const bool has_covariance = estimate.covariance.size() > 0;
+  for (Index i = 0; i < result.means.rows(); ++i) {
+    const Index entry = entries[static_cast<std::size_t>(i)];
+    result.means(i, step) = estimate.mean[entry];
+    result.deviations(i, step) = has_covariance ? std::sqrt(std::max(estimate.covariance(entry, entry), 0.0))
+                                                : estimate.factor.row(entry).norm();
+  }
+}
+
 }  // namespace
 
 FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measurements,
@@ -69,10 +81,7 @@ FilterRun run(Filter& filter, const Gaussian& initial, const Measurements& measu
     if (!running.correct(sample)) break;
     store(running.correction(), filter.model().observed(), step, result);
     if (settings.keep == Keep::all_estimates) result.filtered.push_back(running.estimate());
-    if (traced == 0) continue;
-    const Gaussian estimate = filter.marginal(settings.trace.entries);
-    result.means.col(step) = estimate.mean;
-    result.deviations.col(step) = estimate.deviations();
+    if (traced > 0) trace(running.estimate(), settings.trace.entries, step, result);
   }
   result.failure = running.failure();
   result.events = running.events();

@@ -59,9 +59,14 @@ Eigen::MatrixXcd chirped_lines(const Eigen::MatrixXd& columns, Eigen::Index firs
   return lines;
 }
 
-}  // namespace
+/// Lines of a signal without its mean under a Hann window, padded with zeros to a power of two, at least
+/// twice its length.
+struct PaddedSpectrum {
+  std::vector<Complex> lines;
+  std::size_t length = 0;
+};
 
-AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double interval) {
+PaddedSpectrum padded_spectrum(const Eigen::VectorXd& signal) {
   const auto count = static_cast<std::size_t>(signal.size()), length = std::bit_ceil(2 * count);
   const double mean = signal.mean(), turn = 2.0 * std::numbers::pi / static_cast<double>(count);
   std::vector<double> padded(length, 0.0);
@@ -70,14 +75,22 @@ AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double inter
                 (1.0 - std::cos(turn * (static_cast<double>(k) + 0.5)));
   Eigen::FFT<double> transform;
   transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<std::complex<double>> spectrum;
-  transform.fwd(spectrum, padded);
-  padded = {};
+  PaddedSpectrum found{{}, length};
+  transform.fwd(found.lines, padded);
+  return found;
+}
+
+}  // namespace
+
+AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double interval) {
+  const auto& [spectrum, length] = padded_spectrum(signal);
+  const auto count = static_cast<double>(signal.size());
   const auto size = static_cast<Eigen::Index>(spectrum.size());
   AmplitudeSpectrum result{Eigen::VectorXd(size), Eigen::VectorXd(size)};
   for (Eigen::Index k = 0; k < size; ++k) {
     result.frequency_hz[k] = static_cast<double>(k) / (static_cast<double>(length) * interval);
-    result.amplitude[k] = 2.0 / static_cast<double>(count) * std::abs(spectrum[k]);  // the window's mean is 1
+    result.amplitude[k] =
+        2.0 / count * std::abs(spectrum[static_cast<std::size_t>(k)]);  // the window's mean is 1
   }
   return result;
 }
@@ -95,8 +108,9 @@ double strongest_frequency(const Eigen::VectorXd& signal, double interval) {
   if (count < 16)
     throw std::invalid_argument("signal of " + std::to_string(count) +
                                 " samples; expected at least 16 to find its frequency");
-  const Eigen::VectorXd magnitude = amplitude_spectrum(signal, interval).amplitude;
-  const std::size_t length = 2 * (static_cast<std::size_t>(magnitude.size()) - 1);
+  const auto& [lines, length] = padded_spectrum(signal);
+  Eigen::VectorXd magnitude(static_cast<Eigen::Index>(lines.size()));
+  std::ranges::transform(lines, magnitude.begin(), [](const Complex& line) { return std::abs(line); });
   const auto first = magnitude.begin() + static_cast<std::ptrdiff_t>(2 * length / count + 1);
   const auto peak = std::max_element(first, magnitude.end() - 1);
   if (!(*peak > 0)) throw std::invalid_argument("a signal without any variation has no frequency");

@@ -49,7 +49,8 @@ class Exponential final : public Scheme {
   void step_oscillator(const VectorXd& state, const VectorXd& input, double dt, VectorXd& next,
                        MatrixXd* tangent) {
     const Matrix2d z = a_ * dt;
-    const Exponential2x2 exponential(z);
+    if (!last_ || z != last_z_) last_.emplace(z), last_z_ = z;  // parameters that rest, equal steps
+    const Exponential2x2& exponential = *last_;
     std::optional<ForcedOscillator> forced;
     const StepInput path(input, linear_->input_size());
     next.head<2>() = exponential.value() * state.head<2>();
@@ -130,6 +131,8 @@ class Exponential final : public Scheme {
   const ContinuousModel* model_ = nullptr;
   const LinearMotion* linear_ = nullptr;
   MatrixXd a_, b_, derivative_;
+  Matrix2d last_z_ = Matrix2d::Zero();
+  std::optional<Exponential2x2> last_;  // of last_z_
 };
 
 const bool exponential_registered =

@@ -357,21 +357,23 @@ Index behind_hold(const VectorXd& signal, double interval, Index from, Index to)
   for (; across < to && (signal[across] - level) / held > -low; ++across)
     if ((signal[across] - level) / held > low) last = across;
   if (to - across < fewest_decay_samples || last + 1 >= to) return from;
-  double period = 0.0;
-  try {
-    period = 1.0 / strongest_frequency(signal.segment(across, to - across), interval);
-  } catch (const std::invalid_argument&) {
-    return from;
-  }
-  const auto is_hold = [&](Index since) {
+  const auto is_flat = [&](Index since) {
     const auto part = (signal.segment(since, last - since + 1).array() - level) / held;
-    const auto length = static_cast<double>(part.size());
-    return length * interval > longest * period && static_cast<double>((part > high).count()) > flat * length;
+    return static_cast<double>((part > high).count()) > flat * static_cast<double>(part.size());
   };
   Index since = from;  // the largest reading may be the last of what was held
   const auto beside = [&](Index k) { return (signal[k] - level) / held; };
   while (since > 0 && beside(since - 1) > low && beside(since - 1) < highest) --since;
-  return is_hold(from) || is_hold(since) ? last + 1 : from;
+  if (!is_flat(from) && !is_flat(since)) return from;
+  try {
+    const double period = 1.0 / strongest_frequency(signal.segment(across, to - across), interval);
+    const auto is_long = [&](Index begin) {
+      return static_cast<double>(last - begin + 1) * interval > longest * period;
+    };
+    return (is_flat(from) && is_long(from)) || (is_flat(since) && is_long(since)) ? last + 1 : from;
+  } catch (const std::invalid_argument&) {
+    return from;
+  }
 }
 
 /// The channel and the sample of the largest reading, relative to each channel's own size.
