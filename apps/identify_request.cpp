@@ -123,9 +123,11 @@ std::string damping_law(const Values& values) {
 namespace {
 
 /// One mode of a record that nobody describes: its frequency and damping ratio by the modal analysis are the
-/// first guess. @throws InputError where the record is no free decay of one
-Experiment one_mode(const fs::path& file, const Record& record, const RecordFormat& format, double mass,
+/// first guess. Where the sensor drifts, the record becomes what that analysed.
+/// @throws InputError where the record is no free decay of one
+Experiment one_mode(const fs::path& file, PreparedRecord& prepared, const RecordFormat& format, double mass,
                     Index& channel) {
+  Record& record = prepared.record;
   const auto refuse = [&](const std::string& what) {
     return InputError({file.string()},
                       what + "; `beamid modal " + file.string() +
@@ -143,6 +145,12 @@ Experiment one_mode(const fs::path& file, const Record& record, const RecordForm
           fmt::format("modes of constant frequency and damping do not explain {:.2g} % of the motion",
                       100.0 * one->statistic));
     throw refuse("the record does not decay");
+  }
+  if (!found.drift.empty()) {
+    Record free = found.record;
+    free.remarks = std::move(record.remarks);
+    free.remarks.push_back(found.drift);
+    record = prepared.raw = std::move(free);
   }
   const Pole& pole = found.strongest().pole;
   VectorXd share = pole.shape.cwiseAbs();
@@ -179,8 +187,8 @@ std::vector<IdentifyRequest> undescribed_requests(const Values& values) {
     Index channel = 0;
     IdentifyRequest one{files[r], {}, {}, {}};
     try {
-      one.experiment = one_mode(files[r], prepared.record, cut.format,
-                                values.has("mass") ? values.number("mass") : 1.0, channel);
+      one.experiment =
+          one_mode(files[r], prepared, cut.format, values.has("mass") ? values.number("mass") : 1.0, channel);
       one.experiment.mass_is_stated = values.has("mass");
       take_words(values, one.experiment);
       const bool several = prepared.record.channels.size() > 1;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
+#include "experiments/signal/sway.hpp"
 #include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
@@ -117,6 +118,28 @@ SteadyLines steady_lines(const MatrixXd& outputs, double interval) {
   }
   std::sort(found.lines.begin(), found.lines.end(),
             [](const SteadyLine& a, const SteadyLine& b) { return a.frequency_hz < b.frequency_hz; });
+  return found;
+}
+
+std::optional<DriftFree> without_drift(const Record& record, double lowest_hz) {
+  constexpr double least = 0.02;
+  const double interval = record.interval();
+  DriftFree found{record, 1.0 / lowest_hz};
+  for (const auto& row : record.samples.rowwise()) {
+    const Drift drift = drift_beneath(row.transpose(), interval, found.period);
+    if (drift.share > found.share) found.share = drift.share, found.steepness = drift.steepness;
+  }
+  if (found.share < least) return {};
+  const auto edge = static_cast<Index>(std::lround(found.period / interval));
+  const Index left = record.size() - 2 * edge;
+  found.record.time = record.time.segment(edge, left);
+  found.record.samples.resize(record.samples.rows(), left);
+  DecimatedSignal signal;
+  signal.interval = interval;
+  for (Index i = 0; i < record.samples.rows(); ++i) {
+    signal.samples = record.samples.row(i).transpose();
+    found.record.samples.row(i) = without_sway(signal, found.period).samples.transpose();
+  }
   return found;
 }
 

@@ -1,8 +1,11 @@
-// Lines of machines in random vibration.
+// What no mode makes: lines of machines in random vibration, drift beneath a free decay.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
+
+#include "experiments/record/record.hpp"
 
 namespace beamid::experiments {
 
@@ -34,5 +37,18 @@ struct SteadyLines {
 /// steady. A decay does not: a line's amplitudes in the two halves of the record are within a factor of 1.5.
 /// @param outputs (p x N), channels of about the same size
 SteadyLines steady_lines(const Eigen::MatrixXd& outputs, double interval);
+
+/// A free decay without the drift of its sensor: a mean over two periods is taken off, which leaves
+/// frequencies and damping ratios as they are (signal/sway.hpp).
+struct DriftFree {
+  Record record;           ///< a period shorter at each end
+  double period = 0.0;     ///< [s]
+  double share = 0.0;      ///< largest, of a channel's motion
+  double steepness = 0.0;  ///< of that channel (Drift)
+};
+
+/// Absent: no channel drifts by a fiftieth of its motion or more.
+/// @param lowest_hz frequency of the lowest mode
+std::optional<DriftFree> without_drift(const Record& record, double lowest_hz);
 
 }  // namespace beamid::experiments

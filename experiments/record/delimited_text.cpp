@@ -57,7 +57,9 @@ bool is_key_and_value(const std::vector<std::string_view>& fields) {
   std::string name = folded(unquoted(fields[0]).substr(0, unquoted(fields[0]).find_first_of("[(")));
   if (sampling_name(name) != SamplingName::none && is_reading(fields[1])) return true;
   std::erase_if(name, [](char c) { return c == ' ' || c == '_' || c == '-' || c == ':' || c == '.'; });
-  return keys.contains(name);
+  static const std::set<std::string> names_too{"date",   "datetime", "datum",       "start", "samples",
+                                               "points", "created",  "measurement", "test"};
+  return keys.contains(name) && !(names_too.contains(name) && names_columns({fields[1]}));  // "Date,strain"
 }
 
 std::string_view line_near(std::string_view text, double place) {

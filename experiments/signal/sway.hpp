@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 
 #include "experiments/signal/decimation.hpp"
 
@@ -15,6 +16,21 @@ DecimatedSignal without_sway(DecimatedSignal signal, double period);
 /// The mean of a signal under a Hann window of two periods, a period at each end left out: what the former
 /// takes out. Empty where it is shorter than the window.
 Eigen::VectorXd sway(const DecimatedSignal& signal, double period);
+
+/// 1 - H(s) of without_sway(): what became of e^(s t). @param rate s [rad/s]
+std::complex<double> response_without_sway(std::complex<double> rate, double interval, double period);
+
+/// Slow motion beneath an oscillation, such as a laser's or an integrator's drift.
+struct Drift {
+  double share = 0.0;      ///< root mean square over that of the oscillation
+  double steepness = 0.0;  ///< its largest change within four periods, of all its range
+};
+
+/// What the window of sway() leaves when it passes twice over the signal: of an oscillation of that period
+/// next to nothing, of a drift nearly all. A share of 0 where it turns more than three times, as a slow mode
+/// does, or where the signal is shorter than ten periods or has fewer than 4 samples in one. Instants half a
+/// period apart are looked at.
+Drift drift_beneath(const Eigen::VectorXd& signal, double interval, double period);
 
 // How large a vibration of one frequency is along a signal, and the offset that it rides on.
 

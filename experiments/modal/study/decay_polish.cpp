@@ -1,9 +1,13 @@
+// What is done to a free decay before and after the search of its poles: its drift taken off, close modes
+// parted, all modes fitted at once.
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,6 +17,7 @@
 #include "experiments/modal/close_pair.hpp"
 #include "experiments/modal/joint_decay_fit.hpp"
 #include "experiments/modal/phase_walk.hpp"
+#include "experiments/modal/steady_lines.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 #include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/modal/study/record_kind.hpp"
@@ -22,6 +27,56 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
+
+/// Lines of what is analysed, of channels of about the same size.
+std::vector<RecordLine> lines_of(const Record& record) {
+  return record_lines(scales_of(record).cwiseInverse().asDiagonal() * record.samples, record.interval());
+}
+
+}  // namespace
+
+std::optional<double> take_decay(const Record& measured, bool windowed, Record& whole,
+                                 std::vector<RecordLine>& lines, RecordModes& found) {
+  constexpr double cycles = 2.0, hold = 0.6;  // four cycles in two resolutions each; of the drift's range
+  const auto drift_of = [&](const Record& record) -> std::optional<DriftFree> {
+    lines = lines_of(record);
+    const auto lowest = std::ranges::find_if(
+        lines, [](const RecordLine& line) { return line.frequency_hz >= cycles * line.resolution_hz; });
+    return lowest == lines.end() ? std::nullopt : without_drift(record, lowest->frequency_hz);
+  };
+  std::vector<std::string> remarks;
+  Record part = windowed ? whole : from_release(whole, measured, remarks);
+  check_intervals(part);
+  std::optional<DriftFree> free = drift_of(part);
+  if (!free && part.size() < whole.size()) {  // a drift larger than the motion hides the release
+    const std::vector<RecordLine> kept = lines;
+    std::optional<DriftFree> of_whole = drift_of(whole);
+    if (of_whole && of_whole->steepness < hold) {
+      std::vector<std::string> others;
+      const double begin = from_release(of_whole->record, measured, others).time[0];
+      const Index first = std::lower_bound(whole.time.begin(), whole.time.end(), begin) - whole.time.begin();
+      free = without_drift(part_of(whole, first, whole.size() - first), 1.0 / of_whole->period);
+      if (free) remarks = std::move(others);
+    }
+    lines = kept;
+  }
+  std::ranges::move(remarks, std::back_inserter(found.remarks));
+  if (!free) {
+    found.record = std::move(part);
+    return {};
+  }
+  found.drift = fmt::format(
+      "The signal drifts by {:.2g} % of its motion (root mean square): a mean over {:.3g} s was taken off, "
+      "which leaves frequencies and damping ratios as they are and costs {:.3g} s at each end.",
+      100.0 * free->share, 2.0 * free->period, free->period);
+  found.remarks.push_back(found.drift);
+  found.record = std::move(free->record);
+  whole = found.record;
+  lines = lines_of(found.record);
+  return free->period;
+}
+
+namespace {
 
 // Two modes of a free decay where a search over orders shows one.
 

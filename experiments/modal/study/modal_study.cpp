@@ -4,7 +4,6 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -18,6 +17,7 @@
 #include "experiments/modal/study/mode_objections.hpp"
 #include "experiments/modal/study/record_kind.hpp"
 #include "experiments/modal/subspace_realisation.hpp"
+#include "experiments/signal/sway.hpp"
 #include "experiments/signal/toolbox.hpp"
 
 namespace beamid::experiments {
@@ -106,22 +106,6 @@ std::vector<Objection> decay_objections_to(RecordModes& found) {
             si_unit(record.channels[static_cast<std::size_t>(channel)].quantity)));
   }
   return objections;
-}
-
-/// Rows over the root mean square of all channels of their quantity.
-VectorXd scales_of(const Record& record) {
-  std::map<Quantity, std::pair<double, double>> squares;
-  for (Index i = 0; i < record.samples.rows(); ++i) {
-    auto& [sum, count] = squares[record.channels[i].quantity];
-    sum += (record.samples.row(i).array() - record.samples.row(i).mean()).square().sum();
-    count += static_cast<double>(record.size());
-  }
-  VectorXd scales(record.samples.rows());
-  for (Index i = 0; i < scales.size(); ++i) {
-    const auto& [sum, count] = squares[record.channels[i].quantity];
-    scales[i] = sum > 0 ? std::sqrt(sum / count) : 1;
-  }
-  return scales;
 }
 
 /// Shapes in the channels' units: least squares of all modes to what they are to reproduce.
@@ -357,15 +341,16 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   found.remarks = record.remarks;
   found.free_decay = registry.find(settings.method.name).contracts.contains(contract::free_decay);
   found.mode_by_mode = registry.find(settings.method.name).contracts.contains(contract::mode_by_mode);
-  found.record = complete_part(motion_of(record), found.remarks);
-  const Record whole = found.record;
-  if (found.free_decay && !windowed) found.record = from_release(found.record, record, found.remarks);
+  Record whole = complete_part(motion_of(record), found.remarks);
+  std::vector<RecordLine> lines;
+  std::optional<double> drift_period;
+  if (found.free_decay)
+    drift_period = take_decay(record, windowed, whole, lines, found);
+  else
+    found.record = whole;
   check_intervals(found.record);
   const double interval = found.record.interval();
   const VectorXd scales = scales_of(found.record);
-  std::vector<RecordLine> lines;
-  if (found.free_decay)
-    lines = record_lines(scales.cwiseInverse().asDiagonal() * found.record.samples, interval);
   found.band_hz = settings.band_hz ? *settings.band_hz : decay_band(found.record.samples, interval, lines);
   check_band(found.band_hz, interval, found.record.size());
 
@@ -404,7 +389,9 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   name_missed_lines(lines, found);
   if (found.free_decay) {
     for (ModeEstimate& mode : found.modes)  // back to the undecimated record and its beginning
-      mode.pole.shape *= std::exp(-mode.pole.rate * coarse.last.start) / coarse.last.response(mode.pole.rate);
+      mode.pole.shape *=
+          std::exp(-mode.pole.rate * coarse.last.start) / coarse.last.response(mode.pole.rate) /
+          (drift_period ? response_without_sway(mode.pole.rate, interval, *drift_period) : 1.0);
     for (Objection& one : decay_objections_to(found)) found.objections.push_back(std::move(one));
   }
   for (ModeEstimate& mode : found.modes) {

@@ -53,6 +53,7 @@ struct RecordModes {
   Record record;                     ///< what was analysed: from its beginning on, motion only
   std::vector<std::string> remarks;  ///< sentences
   std::vector<Objection> objections;
+  std::string drift;          ///< sentence about the sensor's drift that was taken off; empty: none
   bool free_decay = true;     ///< as the method takes it
   bool mode_by_mode = false;  ///< without model orders
   bool polished = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -95,6 +96,21 @@ void put_strongest_first(Record& record) {
                   channel(strongest).name));
   std::swap(channel(outputs.front()), channel(strongest));
   record.samples.row(outputs.front()).swap(record.samples.row(strongest));
+}
+
+VectorXd scales_of(const Record& record) {
+  std::map<Quantity, std::pair<double, double>> squares;
+  for (Index i = 0; i < record.samples.rows(); ++i) {
+    auto& [sum, count] = squares[record.channels[i].quantity];
+    sum += (record.samples.row(i).array() - record.samples.row(i).mean()).square().sum();
+    count += static_cast<double>(record.size());
+  }
+  VectorXd scales(record.samples.rows());
+  for (Index i = 0; i < scales.size(); ++i) {
+    const auto& [sum, count] = squares[record.channels[i].quantity];
+    scales[i] = sum > 0 ? std::sqrt(sum / count) : 1;
+  }
+  return scales;
 }
 
 std::vector<RecordLine> record_lines(const Eigen::MatrixXd& samples, double interval) {
@@ -253,14 +269,14 @@ using Eigen::Index, Eigen::VectorXd;
 
 constexpr Index fewest_decay_samples = 64;
 
+}  // namespace
+
 Record part_of(const Record& record, Index begin, Index count) {
   Record part = record;
   part.time = record.time.segment(begin, count).eval();
   part.samples = record.samples.middleCols(begin, count).eval();
   return part;
 }
-
-}  // namespace
 
 Record motion_of(const Record& record) {
   Record motion = record;

@@ -35,6 +35,9 @@ struct RecordLine {
   double share = 0;          ///< of the strongest line of that window
 };
 
+/// Root mean square of all channels of a channel's quantity, for each channel (p).
+Eigen::VectorXd scales_of(const Record& record);
+
 /// Lines of a free decay (samples p x N, channels of about the same size) by rising frequency: of the whole
 /// record and of its first quarter, sixteenth, ... down to 128 samples. A mode that has died out after a
 /// tenth of the record is averaged away in the whole, and clear in the beginning. A line has a fiftieth of
@@ -85,6 +88,9 @@ void search_levels(const ModalMethod& method, const ModalStudySettings& settings
 
 // The part of a record that a modal analysis can use.
 
+/// Samples begin ... begin + count - 1.
+Record part_of(const Record& record, Eigen::Index begin, Eigen::Index count);
+
 /// Channels that move: forces are no response.
 /// @throws std::invalid_argument when there is none.
 Record motion_of(const Record& record);
@@ -99,6 +105,16 @@ Record complete_part(const Record& record, std::vector<std::string>& remarks);
 /// deflection was held, behind its release.
 /// @param measured the record with its forces
 Record from_release(const Record& record, const Record& measured, std::vector<std::string>& remarks);
+
+/// Sets found.record: the decay from its release on, unless a window was given, without the drift of its
+/// sensor. What is larger than the motion hides the release, too, which is then sought anew. A hold and its
+/// release are no drift.
+/// @param measured the record with its forces
+/// @param whole the complete part of the record; without its drift afterwards
+/// @param lines of what is analysed, returned
+/// @returns the period of the mean that was taken off [s]; absent: no drift
+std::optional<double> take_decay(const Record& measured, bool windowed, Record& whole,
+                                 std::vector<RecordLine>& lines, RecordModes& found);
 
 /// Whether several hits rise above what moved before, each from rest.
 bool has_hits(const Record& record);

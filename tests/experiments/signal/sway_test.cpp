@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace beamid::experiments::sway_test {
@@ -31,6 +32,33 @@ TEST(Sway, IsLeftByTheWindowsTransform) {
     const VectorXd expected = (1 - gain) * before.samples.segment(200, left.samples.size());
     EXPECT_LT((left.samples - expected).cwiseAbs().maxCoeff(), 1e-4) << hz;
   }
+}
+
+// Oracle: the motion itself, with and without its mean.
+TEST(Sway, LeavesOfADecayWhatTheResponseStates) {
+  const std::complex<double> rate(-1.3, tau * 4.1);
+  DecimatedSignal decay = sine(1);
+  for (Eigen::Index k = 0; k < decay.samples.size(); ++k)
+    decay.samples[k] = std::exp(rate * (interval * static_cast<double>(k))).real();
+  const DecimatedSignal left = without_sway(decay, period);
+  const std::complex<double> response = response_without_sway(rate, interval, period);
+  for (Eigen::Index k = 0; k < left.samples.size(); k += 100)
+    EXPECT_NEAR(left.samples[k],
+                (response * std::exp(rate * (left.start + interval * static_cast<double>(k)))).real(), 1e-12);
+}
+
+// Oracle: root mean squares of what was added, 1 / sqrt(12) of a line's range, and of the sine, 1 / sqrt(2).
+TEST(Sway, IsADriftWhereItTurnsThreeTimesAtMost) {
+  const VectorXd motion = sine(5).samples, line = VectorXd::LinSpaced(motion.size(), 0, 1);
+  EXPECT_LT(drift_beneath(motion, interval, period).share, 1e-3);
+  const Drift drift = drift_beneath(motion + line, interval, period);
+  EXPECT_NEAR(drift.share, std::sqrt(2.0 / 12.0), 0.25 * std::sqrt(2.0 / 12.0));  // of what windows see
+  EXPECT_LT(drift.steepness, 0.6);
+  EXPECT_EQ(drift_beneath(motion + sine(1.1).samples, interval, period).share, 0.0);  // a slow mode
+  VectorXd held = motion;
+  held.head(900).array() += 3.0;
+  EXPECT_GT(drift_beneath(held, interval, period).steepness, 0.9);
+  EXPECT_EQ(drift_beneath(motion.head(1500), interval, period).share, 0.0);  // shorter than ten periods
 }
 
 TEST(Sway, OfASignalShorterThanTheWindowIsNotSought) {
