@@ -22,10 +22,11 @@ int run_simulate(const Values& values) {
   const int frames = values.has("out") ? source.experiment.simulation.frames : 0;  // nobody would see them
   return deliver(values, [&] {
     return blame_config(source, [&] {
+      const auto motion = std::make_shared<experiments::WholeMotion>();
       const auto test = std::make_shared<const experiments::SimulatedTest>(
           experiments::simulate(source.experiment, source.config.parent_path(), frames, show_progress(values),
-                                source.experiment.acquisition));
-      return experiments::report(source.experiment, test, values.has("surface"));
+                                source.experiment.acquisition, frames > 0 ? motion.get() : nullptr));
+      return experiments::report(source.experiment, test, values.has("surface"), motion);
     });
   });
 }

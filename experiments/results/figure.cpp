@@ -72,8 +72,6 @@ Curve visible_part(const Curve& curve, const std::pair<double, double>& range) {
   return part;
 }
 
-constexpr Eigen::Index long_curve = 20000;  // points
-
 void keep_points(Curve& curve, const std::vector<Eigen::Index>& kept) {
   for (Eigen::VectorXd* values : {&curve.x, &curve.y, &curve.lower, &curve.upper})
     if (values->size() > 0) *values = (*values)(kept).eval();
@@ -84,8 +82,8 @@ Curve thinned_curve(const Curve& curve, const Axis& x_axis) {
   Curve part = x_axis.range && ascending ? visible_part(curve, *x_axis.range) : curve;
   part.points = part.x.size();
   if (is_line(part))
-    keep_points(part,
-                envelope(part.x, part.style == CurveStyle::band ? part.upper : part.y, x_axis.logarithmic));
+    keep_points(part, envelope(part.x, part.style == CurveStyle::band ? part.upper : part.y,
+                               x_axis.logarithmic, most_kept_points));
   return part;
 }
 
@@ -106,7 +104,7 @@ bool is_as_high(const Curve& part, const Curve& whole, const Axis& y_axis) {
 Panel thinned(Panel panel) {
   if (!panel.x_axis.range) return panel;
   for (Curve& curve : panel.curves) {
-    if (curve.x.size() < long_curve || !is_line(curve)) continue;
+    if (curve.x.size() <= most_kept_points || !is_line(curve)) continue;
     Curve part = thinned_curve(curve, panel.x_axis);
     if (is_as_high(part, curve, panel.y_axis)) curve = std::move(part);
   }

@@ -16,6 +16,10 @@ namespace beamid::experiments {
 /// Most points of a line in the data of a figure, and so in its picture.
 inline constexpr Eigen::Index most_drawn_points = 4000;
 
+/// Most points of a line that are kept in memory, for a page to zoom into. A multiple of what pictures show:
+/// their intervals are made of whole ones of these, and so their lowest and highest points are the same.
+inline constexpr Eigen::Index most_kept_points = 50 * most_drawn_points;
+
 /// Indices of the points to keep, ascending, at most about `limit`: the first and the last, and the lowest
 /// and the highest of every interval, the intervals being equally wide on the axis. Points that are not
 /// finite leave a gap and keep it.
@@ -116,8 +120,8 @@ void write(const Figure& figure, const std::filesystem::path& folder);
 /// What the files of a figure show of its curves, in a sentence, where they show an envelope; empty where
 /// they show every point.
 std::string thinning_text(const Figure& figure);
-/// The panel with the points that write() would write, in the memory of these: a million samples take 16 MB a
-/// curve before and 60 kB after. Files and pictures are the same. The range of the x axis is set before;
+/// The panel with the points that a page can zoom into, 200 000 a curve: a million samples take 16 MB a curve
+/// before and 3 MB after. Files and pictures are the same. The range of the x axis is set before;
 /// where the y axis has none and the visible part of a curve has not the extent of the whole, the panel stays
 /// as it is.
 Panel thinned(Panel panel);

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "experiments/results/gnuplot.hpp"
+#include "experiments/results/page/figure_data.hpp"
 #include "experiments/results/text.hpp"
 #include "experiments/text/fields.hpp"
 
@@ -108,11 +109,37 @@ std::string decimal_padding(const NumberColumn& column, std::size_t row) {
   return "<span class=\"pad\">" + spaces + "</span>";
 }
 
+/// Whether Hebrew, Arabic or another script from right to left begins here (UTF-8; blocks from U+0590 to
+/// U+08FF, U+FB1D to U+FEFF).
+bool runs_to_the_left(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  return (byte(0) >= 0xD6 && byte(0) <= 0xDF) || (byte(0) == 0xE0 && byte(1) >= 0xA0 && byte(1) <= 0xA3) ||
+         (byte(0) == 0xEF && byte(1) >= 0xAC && byte(1) <= 0xBB && byte(1) != 0xB8);
+}
+
+/// The text with a mark (U+200E) behind each passage from right to left: without it a browser takes the
+/// numbers that follow for its continuation.
+std::string with_direction(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at + 1;
+    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) ++end;
+    result.append(text, at, end - at);
+    const std::size_t next = std::min(text.find_first_not_of(' ', end), text.size());
+    const std::string_view here = std::string_view(text).substr(at),
+                           behind = std::string_view(text).substr(next);
+    if (runs_to_the_left(here) && !runs_to_the_left(behind) && !behind.starts_with("\u200e"))
+      result += "\u200e";
+    at = end;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string escaped(std::string_view text) {
   std::string result;
-  for (const char letter : clean_lines(text)) {
+  for (const char letter : with_direction(clean_lines(text))) {
     const auto* const special =
         std::find_if(entities.begin(), entities.end(), [&](const auto& e) { return e.first == letter; });
     if (special != entities.end())
@@ -182,8 +209,8 @@ std::string html_picture(const std::filesystem::path& svg, std::string_view desc
   const std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (!file || content.empty()) throw std::runtime_error(svg.string() + " cannot be read");
   return "<figure class=\"plot\"" + std::string(attributes) + R"(><div class="scroll"><img alt=")" +
-         escaped(description) + R"(" src="data:image/svg+xml;base64,)" + base64(content) +
-         "\"></div>\n<figcaption>" + typeset_html(caption) + "</figcaption></figure>\n";
+         escaped(description) + R"(" src=")" + picture_address(content) + "\"></div>\n<figcaption>" +
+         typeset_html(caption) + "</figcaption></figure>\n";
 }
 
 namespace {

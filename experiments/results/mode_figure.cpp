@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <stdexcept>
 #include <vector>
 
@@ -177,7 +180,7 @@ SwingModel::Part axis_part(const fem::StructuralSystem& system, const Eigen::Mat
 
 /// Bodies and sections as triangles; too many sections are left out.
 SwingModel::Part solid_part(const Picture& picture, const std::vector<NodalMotion>& modes) {
-  constexpr std::size_t most_triangles = 4000;
+  constexpr std::size_t most_triangles = 4000, most_bytes = 400'000;
   Picture whole = picture;
   whole.surface = picture.beam != nullptr || picture.space_frame != nullptr;
   const BeamGrid grid = beam_grid(whole);
@@ -191,7 +194,8 @@ SwingModel::Part solid_part(const Picture& picture, const std::vector<NodalMotio
     return corners;
   };
   SwingModel::Part part{SwingModel::Kind::triangles, {}, triangles(true), {}};
-  if (part.corners.size() > 3 * most_triangles) part.corners = triangles(false);
+  const std::size_t bytes = 12 * grid.points.size() * (1 + modes.size()) + 4 * part.corners.size();
+  if (part.corners.size() > 3 * most_triangles || bytes > most_bytes) part.corners = triangles(false);
   // Points of sections that are left out go too.
   std::vector<int> number(grid.points.size(), -1);
   std::vector<Eigen::Index> kept;
@@ -216,6 +220,31 @@ void check_mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixX
     throw std::invalid_argument(
         fmt::format("mode shapes are {} x {}; expected {} x {}, a column for each frequency, one at least",
                     shapes.rows(), shapes.cols(), system.size(), frequencies_hz.size()));
+}
+
+/// Orthonormal shapes (n x r) that hold a motion A (n x samples), and the root mean square of the rest over
+/// that of all. The range of A A' A W, W having 24 random columns, holds the first singular vectors of A;
+/// those of its part B = Q' A, (24 x samples), are exact within it.
+std::pair<Eigen::MatrixXd, double> motion_basis(const Eigen::MatrixXd& motion) {
+  constexpr Eigen::Index most_columns = 24;
+  constexpr double residual_wanted = 1e-3;
+  const double energy = motion.squaredNorm();
+  const Eigen::Index columns = std::min({most_columns, motion.rows(), motion.cols()});
+  std::mt19937 random(1);
+  const Eigen::MatrixXd start = Eigen::MatrixXd::NullaryExpr(
+      motion.cols(), columns, [&random] { return static_cast<double>(random()) / 2147483648.0 - 1.0; });
+  const Eigen::MatrixXd once = motion * start, back = motion.transpose() * once, range = motion * back;
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(motion.rows(), columns);
+  directions = Eigen::HouseholderQR<Eigen::MatrixXd>(range).householderQ() * directions;
+  const Eigen::MatrixXd part = directions.transpose() * motion, gram = part * part.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> values(gram);
+  Eigen::Index kept = 0;
+  double left = energy;
+  while (kept < std::min<Eigen::Index>(columns, most_drawn_modes) &&
+         (kept == 0 || left > residual_wanted * residual_wanted * energy))
+    left -= values.eigenvalues()[columns - ++kept];
+  return {directions * values.eigenvectors().rightCols(kept).rowwise().reverse(),
+          energy > 0 ? std::sqrt(std::max(left, 0.0) / energy) : 0.0};
 }
 
 }  // namespace
@@ -273,6 +302,39 @@ SwingModel mode_model(const Picture& picture, const Eigen::MatrixXd& shapes,
     model.parts.push_back(std::move(solid));
   model.parts.push_back(axis_part(system, places, motions));
   return model;
+}
+
+std::pair<SwingModel, MotionHistory> motion_model(const Picture& picture, const Eigen::VectorXd& time,
+                                                  const Eigen::MatrixXd& displacement) {
+  const fem::StructuralSystem& system = picture.system;
+  if (displacement.rows() != system.size() || displacement.cols() != time.size() || time.size() == 0)
+    throw std::invalid_argument(fmt::format("a motion of {} x {}; expected {} x {}, one sample at least",
+                                            displacement.rows(), displacement.cols(), system.size(),
+                                            time.size()));
+  const auto [basis, residual] = motion_basis(displacement);
+  const Eigen::Matrix3Xd places = nodal_places(system);
+  MotionHistory history{time, basis.transpose() * displacement, 0.0, 100.0 * residual};
+  std::vector<NodalMotion> motions;
+  for (Eigen::Index k = 0; k < basis.cols(); ++k) {
+    motions.push_back(nodal_motion(system, basis.col(k)));
+    NodalMotion& motion = motions.back();
+    const double size = motion.translation.colwise().norm().maxCoeff();
+    if (!(size > 0.0)) continue;
+    motion.translation /= size;
+    motion.rotation /= size;
+    history.weights.row(k) *= size;
+  }
+  for (Eigen::Index sample = 0; sample < time.size(); ++sample) {
+    Eigen::Matrix3Xd moved = Eigen::Matrix3Xd::Zero(3, places.cols());
+    for (std::size_t k = 0; k < motions.size(); ++k)
+      moved += history.weights(static_cast<Eigen::Index>(k), sample) * motions[k].translation;
+    history.largest = std::max(history.largest, moved.colwise().norm().maxCoeff());
+  }
+  SwingModel model;
+  if (SwingModel::Part solid = solid_part(picture, motions); !solid.corners.empty())
+    model.parts.push_back(std::move(solid));
+  model.parts.push_back(axis_part(system, places, motions));
+  return {std::move(model), std::move(history)};
 }
 
 Curve mode_curve(const fem::StructuralSystem& system, const Eigen::VectorXd& shape) {

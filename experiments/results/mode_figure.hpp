@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 
 #include "experiments/results/figure.hpp"
 #include "experiments/results/page/swing_model.hpp"
@@ -33,6 +34,14 @@ Figure mode_figure(const fem::StructuralSystem& system, const Eigen::MatrixXd& s
 /// @throws std::invalid_argument as mode_figure().
 SwingModel mode_model(const Picture& picture, const Eigen::MatrixXd& shapes,
                       const Eigen::VectorXd& frequencies_hz);
+
+/// A motion in time as such a model, by at most 12 shapes of its own: the singular vectors of `displacement`,
+/// as many as hold it to 0.1 % (root mean square).
+///
+/// @param time (samples) [s]. @param displacement q of the picture's system (n x samples).
+/// @throws std::invalid_argument on other sizes, and without a mesh.
+std::pair<SwingModel, MotionHistory> motion_model(const Picture& picture, const Eigen::VectorXd& time,
+                                                  const Eigen::MatrixXd& displacement);
 
 /// A beam's mode shape (n) along x, smooth between the nodes, largest deflection 1.
 Curve mode_curve(const fem::StructuralSystem& system, const Eigen::VectorXd& shape);

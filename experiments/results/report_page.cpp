@@ -146,11 +146,14 @@ bool is_warning(const Paragraph& paragraph) {
   return paragraph.severity == Severity::warning || paragraph.severity == Severity::failure;
 }
 
-/// The first line of a message, at most 300 characters of it.
+/// The first line of a message; where it is longer than 240 characters, as many of its sentences as fit.
 std::string beginning(std::string text) {
-  constexpr std::size_t longest = 300;
+  constexpr std::size_t longest = 240;
   if (const std::size_t end = text.find('\n'); end != std::string::npos) text.resize(end);
-  return text.size() > longest ? text.substr(0, text.rfind(' ', longest)) + " ..." : text;
+  if (text.size() <= longest) return text;
+  if (const std::size_t end = text.rfind(". ", longest); end != std::string::npos)
+    return text.substr(0, end + 1);
+  return text.substr(0, text.rfind(' ', longest)) + " ...";
 }
 
 /// The first thing to see after the title: a colour and a label, and what it stands on.
@@ -187,24 +190,26 @@ std::string folded(const std::string& heading, const std::string& html, bool ope
          html + "</details>\n";
 }
 
-/// Bytes that the data of figures may take beside the static pictures in a page of 1.5 MB: 50 kB are its
-/// script and style, 60 kB its text.
-std::size_t room_for_data(const std::vector<Figure>& figures, const std::filesystem::path& folder) {
+/// Bytes that the data of figures may take beside the static pictures and so many of models in a page of
+/// 1.5 MB: 55 kB are its script and style, 55 kB its text.
+std::size_t room_for_data(const std::vector<Figure>& figures, const std::filesystem::path& folder,
+                          std::size_t models) {
   constexpr std::size_t page = 1'500'000 - 110'000, least = 100'000;
-  std::size_t pictures = 0;
+  std::size_t pictures = models;
   for (const Figure& figure : figures) {
-    std::error_code missing;
-    const auto bytes = std::filesystem::file_size(folder / (figure.name + ".svg"), missing);
-    if (!missing) pictures += bytes / 3 * 4;  // as base64
+    std::ifstream file(folder / (figure.name + ".svg"), std::ios::binary);
+    const std::string svg{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    pictures += picture_address(svg).size();
   }
   return std::clamp(page - std::min(page, pictures), least, most_page_bytes);
 }
 
 /// Each figure as an element of the page.
-std::vector<std::string> figures_html(const Results& results, const std::filesystem::path& folder) {
+std::vector<std::string> figures_html(const Results& results, const std::filesystem::path& folder,
+                                      std::size_t models) {
   std::vector<std::string> all;
   const std::vector<std::string> attributes =
-      figure_attributes(results.figures, room_for_data(results.figures, folder));
+      figure_attributes(results.figures, room_for_data(results.figures, folder, models));
   for (std::size_t i = 0; i < results.figures.size(); ++i) {
     const Figure& figure = results.figures[i];
     const std::filesystem::path svg = folder / (figure.name + ".svg");
@@ -231,10 +236,33 @@ std::string models_html(const Results& results, const std::filesystem::path& fol
       std::ifstream file(folder / name, std::ios::binary);
       const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
       if (bytes.empty()) continue;
-      html += "<figure class=\"motion\" data-name=\"" + escaped(name.substr(0, name.size() - 4)) +
-              "\" data-model=\"" + base64(bytes) + "\">\n<figcaption>" + escaped(name) +
-              ", which swings: glTF 2.0, one animation for each mode.</figcaption></figure>\n";
+      html +=
+          "<figure class=\"motion\" data-name=\"" + escaped(name.substr(0, name.size() - 4)) +
+          "\" data-model=\"" + base64(bytes) + "\">\n<figcaption>" + escaped(name) +
+          (name.starts_with("motion") ? ", the simulated motion: glTF 2.0, one animation at its own speed."
+                                      : ", which swings: glTF 2.0, one animation for each mode.") +
+          "</figcaption></figure>\n";
     }
+  return html;
+}
+
+constexpr std::string_view contents_mark = "<nav aria-label=\"contents\">\n", contents_end = "</nav>\n";
+
+/// Where the contents of a page of one section stand: after its title and verdict. A wide screen has them at
+/// the side, a narrow one here.
+std::size_t end_of_verdict(std::string_view html) {
+  constexpr std::string_view title_end = "</h1>\n", verdict = "<p class=\"verdict ", paragraph_end = "</p>\n";
+  std::size_t at = html.find(title_end);
+  if (at == std::string_view::npos) return 0;
+  at += title_end.size();
+  if (!html.substr(at).starts_with(verdict)) return at;
+  const std::size_t end = html.find(paragraph_end, at);
+  return end == std::string_view::npos ? at : end + paragraph_end.size();
+}
+
+std::string without_contents(std::string html) {
+  const std::size_t at = html.find(contents_mark), end = html.find(contents_end, at);
+  if (at != std::string::npos && end != std::string::npos) html.erase(at, end + contents_end.size() - at);
   return html;
 }
 
@@ -301,8 +329,8 @@ ReportSection report_section(const Results& results, const std::filesystem::path
   }
   std::string body = parts[0].html;
   constexpr std::size_t shown = 2;  // figures; the others are folded
-  const std::vector<std::string> figures = figures_html(results, folder);
   const std::string models = models_html(results, folder);
+  const std::vector<std::string> figures = figures_html(results, folder, models.size());
   if (!figures.empty() || !models.empty()) body += "<h2>Figures</h2>\n" + models;
   for (std::size_t i = 0; i < std::min(shown, figures.size()); ++i) body += figures[i];
   // What is short stays open: folding is for pages that are long.
@@ -329,24 +357,31 @@ ReportSection report_section(const Results& results, const std::filesystem::path
 
 std::string report_page(const std::vector<ReportSection>& sections) {
   const PageScript script = page_script();
+  const bool alone = sections.size() == 1;
   std::string page = std::string(head).append(script.policy).append(head_end), contents, body;
   page.append("<style>\n").append(page_style()).append("</style>\n");
-  page += "<title>" + escaped(sections.size() == 1 ? sections[0].title : "beamid report") +
-          "</title>\n</head>\n<body>\n";
+  page += "<title>" + escaped(alone ? sections[0].title : "beamid report") + "</title>\n</head>\n";
   std::size_t entries = 0;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const std::string id = "section-" + std::to_string(i + 1);
     const Headings marked = with_anchors(sections[i].html, id);
     entries += marked.count;
-    contents += sections.size() > 1
-                    ? "<li><a href=\"#" + id + "\">" + typeset_html(sections[i].title) + "</a>" +
-                          (marked.count > 0 ? "<ol>\n" + marked.list + "</ol>" : "") + "</li>\n"
-                    : marked.list;
+    contents += alone ? marked.list
+                      : "<li><a href=\"#" + id + "\">" + typeset_html(sections[i].title) + "</a>" +
+                            (marked.count > 0 ? "<ol>\n" + marked.list + "</ol>" : "") + "</li>\n";
     body += "<section id=\"" + id + "\">\n";
     body.append(begin_mark).append(marked.html).append(end_mark).append("</section>\n");
   }
-  if (sections.size() > 1 || entries > 2)
-    page += "<nav aria-label=\"contents\">\n<p>Contents</p>\n<ol>\n" + contents + "</ol>\n</nav>\n";
+  const bool listed = !alone || entries > 2;
+  page += listed ? "<body class=\"listed\">\n" : "<body>\n";
+  if (listed) {
+    contents = std::string(contents_mark) + "<p>Contents</p>\n<ol>\n" + contents + "</ol>\n" +
+               std::string(contents_end);
+    if (alone)
+      body.insert(end_of_verdict(body), contents);
+    else
+      page += contents;
+  }
   return page + "<main>\n" + body + "</main>\n" +
          "<footer>Made by beamid " BEAMID_VERSION
          ". Numbers, tables and figures of this page lie beside it as JSON, CSV and "
@@ -361,7 +396,7 @@ std::vector<ReportSection> sections_of(const std::string& page) {
     begin += begin_mark.size();
     const std::size_t end = page.find(end_mark, begin);
     if (end == std::string::npos) break;
-    ReportSection section{{}, without_anchors(page.substr(begin, end - begin))};
+    ReportSection section{{}, without_anchors(without_contents(page.substr(begin, end - begin)))};
     const std::size_t title = section.html.find("<h1>"), after = section.html.find("</h1>");
     if (title != std::string::npos && after != std::string::npos)
       section.title = unescaped(std::string_view(section.html).substr(title + 4, after - title - 4));

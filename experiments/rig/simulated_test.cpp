@@ -317,10 +317,38 @@ void add_input(SimulatedTest& test, const SampleClock& clock, const Excitation& 
   test.record.input_path = InputPath::linear;
 }
 
+/// Instants of a whole motion. Eight samples are a fraction of a period of what can be seen: a record has ten
+/// or more for each period of its lowest mode.
+std::vector<Index> motion_samples(Index samples, Index coordinates, Index steps) {
+  constexpr Index most_samples = 4000, most_numbers = 4'000'000, longest_stride = 8;
+  const Index most = std::clamp<Index>(most_numbers / coordinates, 2, most_samples);
+  const Index stride = std::clamp<Index>((samples + most - 1) / most, 1, longest_stride);
+  std::vector<Index> kept;
+  for (Index k = 0; k < samples && static_cast<Index>(kept.size()) < most; k += stride)
+    kept.push_back(k * steps);
+  return kept;
+}
+
+/// Takes the whole motion out of a response, which keeps the fields at its frames.
+void separate(const std::vector<Index>& frames, const std::vector<Index>& shown, fem::Response& response,
+              WholeMotion& motion) {
+  const auto places_of = [all = response.frames](const std::vector<Index>& some) {
+    std::vector<Index> places;
+    for (const Index one : some)
+      places.push_back(std::lower_bound(all.begin(), all.end(), one) - all.begin());
+    return places;
+  };
+  motion = {response.time(shown), response.field_displacement(Eigen::all, places_of(shown))};
+  for (MatrixXd* field :
+       {&response.field_displacement, &response.field_velocity, &response.field_acceleration})
+    *field = MatrixXd((*field)(Eigen::all, places_of(frames)));
+  response.frames = frames;
+}
+
 }  // namespace
 
 SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path& folder, int frames,
-                       const Progress& progress, const Acquisition& acquisition) {
+                       const Progress& progress, const Acquisition& acquisition, WholeMotion* motion) {
   const Simulation& settings = experiment.simulation;
   SimulatedTest test;
   test.sensors = experiment.sensors.empty() ? default_sensors() : experiment.sensors;
@@ -369,8 +397,12 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
       add(one, history);
   }
   test.notes = std::move(history.notes);
+  std::vector<Index> pictures, shown;
   for (const Index sample : evenly_spread(affordable_frames(frames, test.system.size(), test.notes), samples))
-    grid.frames.push_back(sample * steps);
+    pictures.push_back(sample * steps);
+  if (motion && !test.system.mesh.nodes.empty()) shown = motion_samples(samples, test.system.size(), steps);
+  std::set_union(pictures.begin(), pictures.end(), shown.begin(), shown.end(),
+                 std::back_inserter(grid.frames));
   test.step = grid.interval;
   if (experiment.storey_springs.empty()) {
     progress("modes");
@@ -382,10 +414,12 @@ SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path
     test.method.name = "cvode";
     test.response = storey_response(experiment, test.system, points.all(), history.loading, grid);
   }
+  if (!shown.empty()) separate(pictures, shown, test.response, *motion);
   for (const std::string& remark : test.response.remarks) test.notes.push_back(remark);
 
   const SampleClock clock = clock_of(acquisition, settings, samples);
   test.event = clock.event;
+  if (!shown.empty()) motion->time.array() += clock.event;
   test.record.time = clock.time;
   test.record.samples.resize(static_cast<Index>(test.sensors.size()), clock.time.size());
   for (std::size_t i = 0; i < test.sensors.size(); ++i) {

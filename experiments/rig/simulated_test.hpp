@@ -27,13 +27,22 @@ struct SimulatedTest {
   std::vector<std::string> notes;       ///< what a reader should know, a sentence each
 };
 
+/// The motion of the whole structure at many samples: what a page plays.
+struct WholeMotion {
+  Eigen::VectorXd time;          ///< (samples) [s], on the record's clock
+  Eigen::MatrixXd displacement;  ///< q (n x samples), relative to the base where that moves
+};
+
 /// @param folder in which the excitation's file is looked for.
 /// @param frames pictures of the whole beam to keep.
 /// @param acquisition what sensors and logger do to the readings; nothing unless given. Between the steps of
 /// the integration readings run along a cubic spline: with a jitter it takes at least eight steps per sample.
+/// @param motion receives the whole motion from the beginning on: every sample, or every second, ... eighth,
+/// at most 4000 of them and 4 000 000 numbers; of a structure without a mesh none.
 /// @throws InputError as excite(); std::invalid_argument when the method cannot treat the beam or its
 /// damping.
 SimulatedTest simulate(const Experiment& experiment, const std::filesystem::path& folder, int frames,
-                       const Progress& progress, const Acquisition& acquisition = {});
+                       const Progress& progress, const Acquisition& acquisition = {},
+                       WholeMotion* motion = nullptr);
 
 }  // namespace beamid::experiments

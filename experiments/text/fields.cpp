@@ -36,6 +36,11 @@ bool is_control(char32_t code) {
   return code < 0x20 || (code >= 0x7F && code <= 0x9F) || code == 0xFFFE || code == 0xFFFF;
 }
 
+/// Overrides, embeddings and isolates: they would turn round what stands behind the text, too.
+bool turns_direction(char32_t code) {
+  return (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+}
+
 std::string clean(std::string_view text, bool lines) {
   std::string result;
   while (!text.empty()) {
@@ -46,7 +51,7 @@ std::string clean(std::string_view text, bool lines) {
       result += ' ';
     } else if (letter.code == '\r') {
       if (!lines && !text.substr(1).starts_with('\n')) result += ' ';
-    } else if (!is_control(letter.code)) {
+    } else if (!is_control(letter.code) && !turns_direction(letter.code)) {
       if (letter.valid)
         result += text.substr(0, letter.bytes);
       else

@@ -3,11 +3,13 @@
 Oracles: results.json and the CSV files beside the page; what a browser reports of requests and errors.
 
 Usage: pages_in_browser.py BEAMID TUTORIALS [SCREENSHOTS]
+With BEAMID_UPDATE_GOLDEN in the environment the pictures of tests/apps/page_pictures.json are written instead of compared.
 """
 
 import base64
 import csv
 import json
+import math
 import os
 import pathlib
 import re
@@ -187,15 +189,90 @@ def check_page(browser, folder, name, screenshots):
     check(browser.value("[...document.images].every(i => i.alt)"), f"{name}: every static picture has a text")
     wide = browser.value("document.documentElement.scrollWidth <= innerWidth")
     check(wide, f"{name}: the page fits 1300 px")
+    check_contents(browser, f"{name}, 1300 px", aside=True)
+    samples = browser.value("[...document.querySelectorAll('.legend button')].every(b => b.querySelector('.sample svg path'))")
+    check(samples, f"{name}: every label of a legend has a sample of its curve")
     browser.screenshot(screenshots and screenshots / f"{name}.png")
     browser.open(page, width=400, dark=True)
     check(browser.value("document.documentElement.scrollWidth <= 401"), f"{name}: the page fits 400 px")
+    check_contents(browser, f"{name}, 400 px", aside=False)
     browser.screenshot(screenshots and screenshots / f"{name}_narrow_dark.png")
     browser.open(page, javascript=False)
     browser.call("Emulation.setScriptExecutionDisabled", value=False)
     shown = browser.value("[...document.images].filter(i => i.naturalWidth > 0 && i.offsetWidth > 0).length")
     check(shown >= min(figures, 2), f"{name}: static figures without JavaScript ({shown})")
     check(browser.value("document.querySelectorAll('canvas').length") == 0, f"{name}: nothing half alive without JavaScript")
+
+
+def check_contents(browser, where, aside):
+    """Contents stand beside the title, or below it and the verdict."""
+    places = browser.value("['nav', 'h1', '.verdict', 'section > p:not(.verdict)'].map(s => document.querySelector(s)?.getBoundingClientRect())"
+                           ".map(r => r && [r.left, r.top, r.right, r.bottom])")
+    contents, title, verdict, text = places
+    if contents:
+        right = contents[2] < title[0] if aside else verdict[3] <= contents[1] and contents[3] <= text[1]
+        check(title[1] <= (80 if aside else 40) and right, f"{where}: contents are not above the title ({contents}, {title})")
+
+
+def check_paper(browser, folder, name):
+    """On A4 figures are whole, with their captions and headings: 27.7 cm high, 19 cm wide at 96 px an inch."""
+    browser.open(folder / "report.html", width=718)
+    browser.value("document.querySelectorAll('details').forEach(part => { part.open = true; })")
+    browser.call("Emulation.setEmulatedMedia", media="print")
+    heights = browser.value("[...document.querySelectorAll('.plot')].map(f => f.getBoundingClientRect().height)")
+    check(max(heights) < 980, f"{name}: figures fit a page of paper {max(heights):.0f} px")
+    hidden = browser.value("[...document.querySelectorAll('section nav, .live, .bar, .copy')].every(e => !e.offsetParent)")
+    check(hidden, f"{name}: no buttons and no contents on paper")
+    shown = browser.value("[...document.images].every(i => i.offsetWidth > 0)")
+    check(shown, f"{name}: the static figures are on paper")
+
+
+PICTURES = pathlib.Path(__file__).resolve().parent / "page_pictures.json"
+
+
+def picture_of(browser, canvas):
+    """What a panel shows inside its axes, where no font is: the mean colours of 96 x 48 fields."""
+    return bytes(browser.value(f"""(() => {{
+      const c = {canvas}, [l, t, w, h] = c.dataset.box.split(' ').map(Math.round), wide = 96, high = 48;
+      const from = c.getContext('2d').getImageData(l, t, w, h).data, sum = new Float64Array(3 * wide * high), count = new Float64Array(wide * high);
+      for (let y = 0; y < h; ++y) for (let x = 0; x < w; ++x) {{
+        const field = Math.floor(y * high / h) * wide + Math.floor(x * wide / w);
+        count[field] += 1;
+        for (let k = 0; k < 3; ++k) sum[3 * field + k] += from[4 * (y * w + x) + k];
+      }}
+      return Array.from(sum, (s, i) => Math.round(s / Math.max(1, count[Math.floor(i / 3)])));
+    }})()"""))
+
+
+def difference(one, other):
+    """The largest of any field, of 255."""
+    return max(abs(a - b) for a, b in zip(one, other))
+
+
+def check_pictures(browser, work, names):
+    """The first five panels of the first figure look as they are stored, to a tolerance that each single curve exceeds where it is missing."""
+    stored = json.loads(PICTURES.read_text()) if PICTURES.exists() else {}
+    made, tolerance = {}, 16
+    for name in names:
+        browser.open(work / name / "report.html")
+        figure = "document.querySelector('figure.plot.alive')"
+        count = min(5, browser.value(f"{figure}.querySelectorAll('.cell canvas').length"))
+        panels = [f"{figure}.querySelectorAll('.cell canvas')[{k}]" for k in range(count)]
+        found = [picture_of(browser, panel) for panel in panels]
+        made[name] = [base64.b64encode(zlib.compress(one, 9)).decode() for one in found]
+        if not os.environ.get("BEAMID_UPDATE_GOLDEN"):
+            away = [difference(one, zlib.decompress(base64.b64decode(known))) for one, known in zip(found, stored.get(name, []))]
+            check(len(away) == len(stored.get(name, [])) == count and max(away) < tolerance,
+                  f"{name}: {count} panels look as stored, to {max(away, default=math.nan)} of 255")
+        for k in range(browser.value(f"{figure}.querySelectorAll('.legend button').length")):
+            label = f"{figure}.querySelectorAll('.legend button')[{k}]"
+            browser.value(f"{label}.click()")
+            browser.settle()
+            away = max(difference(picture_of(browser, panel), one) for panel, one in zip(panels, found))
+            check(away > tolerance, f"{name}: without '{browser.value(label + '.innerText').strip()}' it would not ({away})")
+            browser.value(f"{label}.click()")
+    if os.environ.get("BEAMID_UPDATE_GOLDEN"):
+        PICTURES.write_text(json.dumps(made, indent=1) + "\n")
 
 
 def check_values(browser, folder):
@@ -240,6 +317,35 @@ def check_values(browser, folder):
     browser.value("document.querySelectorAll('figure.plot.alive .legend button').forEach(b => b.click())")
     browser.settle()
     check(browser.value(ink) == full, "and on again")
+
+
+def check_peak(browser, folder):
+    """The half-power width of a spectrum's peak is that of spectrum.csv."""
+    rows = list(csv.reader(open(folder / "spectrum.csv", encoding="utf-8")))
+    column = next(i for i, head in enumerate(rows[0]) if "measured" in head)
+    line = [(float(row[column]), float(row[column + 1])) for row in rows[1:] if row[column]]
+    top = max(range(len(line)), key=lambda i: line[i][1])
+    half = line[top][1] / 2 ** 0.5
+    ends = []
+    for step in (-1, 1):
+        i = top
+        while line[i][1] > half:
+            i += step
+        (f, low), (g, high) = line[i], line[i - step]
+        ends.append(f + (g - f) * (half - low) / (high - low))
+    browser.open(folder / "report.html")
+    canvas = "document.querySelectorAll('figure.plot.alive')[1].querySelector('canvas')"
+    left, top_edge, _, height = place(browser, canvas)
+    low, high, from_left, wide = browser.value(
+        f"(() => {{ const d = {canvas}.dataset, b = d.box.split(' '); return [...d.x.split(' '), b[0], b[2]].map(Number); }})()")
+    x = left + from_left + wide * (line[top][0] - low) / (high - low)
+    browser.mouse("mouseMoved", x, top_edge + 0.3 * height)
+    browser.settle()
+    text = browser.value(f"{canvas}.parentElement.querySelector('.reading').innerText")
+    shown = re.search(r"peak ([0-9.]+) Hz: half-power width ([0-9.e-]+) Hz", text)
+    wanted = (line[top][0], ends[1] - ends[0])
+    close = shown and all(abs(float(shown[k + 1]) - wanted[k]) < 0.01 * wanted[k] for k in (0, 1))
+    check(bool(close), f"a peak shows its half-power width: {text!r}, in spectrum.csv {wanted}")
 
 
 def check_copies(browser, folder):
@@ -296,21 +402,139 @@ def check_swing(browser, folder):
     shown = float(re.search(r"([0-9.]+) Hz", name)[1])
     wanted = modes[1]["frequency_hz"]
     check(abs(shown - wanted) < 1e-3 * wanted, f"the second mode's frequency is that of results.json: {name}")
+    browser.settle()
+    alone = browser.value(picture)
+    browser.value("(() => { const s = document.querySelectorAll('.motion select')[1]; s.value = 0; s.dispatchEvent(new Event('change')); })()")
+    beside = browser.value("document.querySelector('.motion .reading').textContent")
+    check(browser.value(picture) != alone and "dashed: mode 1," in beside, f"a second shape swings beside it: {beside}")
+
+
+def check_motion(browser, folder):
+    """The motion of simulate. Oracle: record.csv, whose sensor at the tip moves farthest."""
+    browser.open(folder / "report.html")
+    canvas, clock = "document.querySelector('canvas.swing')", "document.querySelector('.bar.time input')"
+    place(browser, canvas)
+    picture = f"{canvas}.toDataURL()"
+    browser.value("new Promise(done => setTimeout(() => done(1), 300))")
+    check(browser.value(f"Number({canvas}.dataset.time)") > 0, "a motion plays")
+    browser.value("[...document.querySelectorAll('.motion button')].find(b => b.textContent === 'Pause').click()")
+    rows = list(csv.reader(open(folder / "record.csv", encoding="utf-8")))
+    column = next(i for i, head in enumerate(rows[0]) if head.startswith("displacement"))
+    record = [(float(row[0]), abs(float(row[column]))) for row in rows[1:]]
+    first, last = (browser.value(f"Number({clock}.{end})") for end in ("min", "max"))
+    check(first == record[0][0] and abs(last - record[-1][0]) < 0.01, f"the slider goes over the record, {first} to {last} s")
+    wrong, pictures = [], set()
+    for time, tip in record[::len(record) // 12]:
+        browser.value(f"(() => {{ const s = {clock}; s.value = {time}; s.dispatchEvent(new Event('input')); }})()")
+        text = browser.value("document.querySelector('.motion .reading').textContent")
+        shown = float(re.search(r"largest displacement ([-+0-9.e]+) m of", text)[1])
+        pictures.add(browser.value(picture))
+        if not 0.98 * tip - 1e-5 <= shown <= 1.02 * tip + 5e-4:  # near rest higher modes move other places farther
+            wrong.append((time, shown, tip))
+    check(not wrong and len(pictures) > 10, f"the largest displacement is that of record.csv at 13 times {wrong[:2]}")
+    before = browser.value(f"Number({canvas}.dataset.time)")
+    browser.value(f"{canvas}.dispatchEvent(new KeyboardEvent('keydown', {{key: ','}}))")
+    step = before - browser.value(f"Number({canvas}.dataset.time)")
+    check(0 < step < 0.01, f"a comma goes back by one picture ({step:.4g} s)")
+    left, top, width, height = place(browser, canvas)
+    still, x, y = browser.value(picture), left + width / 2, top + height / 2
+
+    def touch(kind, apart):
+        points = [{"x": x - apart, "y": y, "id": 0}, {"x": x + apart, "y": y, "id": 1}] if apart else []
+        browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+
+    for kind, apart in (("touchStart", 20), ("touchMove", 40), ("touchMove", 60), ("touchEnd", 0)):
+        touch(kind, apart)
+    browser.settle()
+    check(browser.value(picture) != still, "two fingers come nearer")
+
+
+def check_long(browser, beamid, work):
+    """Of 100 000 samples the page has each: one that stands alone is read at its own time after zooming in."""
+    spike, at = 7.25, 87654
+    with open(work / "long.csv", "w", encoding="utf-8") as file:
+        file.write("time_s,acceleration_m_per_s2\n")
+        file.writelines(f"{k / 1000:.3f},{spike if k == at else math.sin(0.05 * k) + 0.001 * (k * 7919 % 1000):.4f}\n" for k in range(100_000))
+    subprocess.run([beamid, "inspect", "long.csv", "--out", "long", "--no-progress"], cwd=work, check=False, stdout=subprocess.DEVNULL)
+    size = (work / "long" / "report.html").stat().st_size
+    check(size <= 1.5e6, f"a page of 100 000 samples has {size / 1000:.0f} kB")
+    browser.open(work / "long" / "report.html")
+    note = browser.value("document.querySelector('.live .note')?.textContent || ''")
+    check(bool(re.match("All [0-9]+ points of the longest curve are here", note)) and "1/65 534" in note, f"and states what it shows: {note}")
+    left, top, _, height = place(browser)
+    for _ in range(3):
+        low, high, from_left, wide = browser.value(
+            f"(() => {{ const d = {FIRST}.dataset, b = d.box.split(' '); return [...d.x.split(' '), b[0], b[2]].map(Number); }})()")
+        x = left + from_left + wide * (at / 1000 - low) / (high - low)
+        y = top + 0.5 * height
+        browser.mouse("mousePressed", x - 12, y, button="left", clickCount=1)
+        browser.mouse("mouseMoved", x + 12, y, button="left", buttons=1)
+        browser.mouse("mouseReleased", x + 12, y, button="left", clickCount=1)
+        browser.settle()
+    low, high = browser.value(f"{FIRST}.dataset.x.split(' ').map(Number)")
+    browser.mouse("mouseMoved", left + from_left + wide * (at / 1000 - low) / (high - low), y)
+    browser.settle()
+    text = browser.value(f"{FIRST}.parentElement.querySelector('.reading').innerText")
+    numbers = [float(one) for one in re.findall(r"(-?[0-9.]+) (?:s|m/s²)", text)]
+    found = len(numbers) > 1 and abs(numbers[0] - at / 1000) < 1e-6 and abs(numbers[1] - spike) < 2e-4
+    check(found and high - low < 0.1, f"a single sample is read after zooming to {high - low:.4f} s: {text!r}")
+    start = browser.value("performance.now()")
+    for key in ("-", "-", "+", "+") * 5:
+        browser.value(f"{FIRST}.dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))")
+        browser.settle()
+    taken = (browser.value("performance.now()") - start) / 20
+    check(taken < 100, f"a zoom takes {taken:.0f} ms, less than a tenth of a second")
 
 
 def check_hostile(browser, beamid, work):
-    """Names with markup, quotes and right-to-left text stay text."""
-    title = "<img src=x onerror=document.title='taken'></script>\"'&amp; \u202eabc " + "long" * 60
+    """Names of files, sensors and titles with markup, quotes, great length and right-to-left text stay text where they stand."""
+    markup, left = "<img src=x onerror=document.title='taken'></script>\"'&amp;", "\u05d0\u05d1\u05d2"
+    title = f"{markup} \u202eabc " + "long" * 60
     text = (work / "tutorials/02_identify_a_record/cantilever.toml").read_text(encoding="utf-8")
     text = re.sub(r"(?m)^title = .*$", "", text)
     (work / "hostile.toml").write_text(f'title = {json.dumps(title, ensure_ascii=False)}\n{text}', encoding="utf-8")
-    subprocess.run([beamid, "modes", "--config", "hostile.toml", "--modes", "3", "--out", "hostile", "--no-progress"], cwd=work, check=True,
-                   stdout=subprocess.DEVNULL)
-    browser.open(work / "hostile" / "report.html", width=400)
-    check(browser.problems() == [], f"a hostile title makes no error {browser.problems()[:2]}")
-    check("<img src=x" in browser.value("document.querySelector('h1').textContent"), "and is shown as it is written")
-    check(browser.value("document.title") != "taken", "and is not run")
-    check(browser.value("document.documentElement.scrollWidth <= 401"), "and fits 400 px")
+    beam = "[beam]\nlength_m = 1.1\nwidth_m = 0.06\nheight_m = 0.006\nyoungs_modulus_pa = 2.12e11\nmass_kg = 3.055\n"
+    sensor = json.dumps(f"{left} {markup[:60]}", ensure_ascii=False)
+    (work / "sensor.toml").write_text(f"title = {json.dumps(left)}\n{beam}[[sensors]]\nquantity = 'displacement'\nname = {sensor}\n"
+                                      "[simulation]\nduration_s = 2\nsampling_rate_hz = 200\n", encoding="utf-8")
+    record = f"<img src=x onerror=document.title=`taken`> \"'& {left}"
+    shutil.copyfile(work / "tutorials/02_identify_a_record/tip_acceleration.csv", work / record)
+    commands = {"hostile_title": ["modes", "--config", "hostile.toml", "--modes", "3"], "hostile_file": ["modal", record],
+                "hostile_sensor": ["simulate", "--config", "sensor.toml"]}
+    for name, words in commands.items():
+        subprocess.run([beamid, *words, "--out", name, "--no-progress"], cwd=work, check=False, stdout=subprocess.DEVNULL)
+    subprocess.run([beamid, "report", *commands, "--out", "hostile.html"], cwd=work, check=True, stdout=subprocess.DEVNULL)
+    shown = {"hostile_title": markup, "hostile_file": record, "hostile_sensor": markup[:60], "hostile_joined": markup}
+    for name, words in shown.items():
+        page = work / name / "report.html"
+        if name == "hostile_joined":
+            page.parent.mkdir()
+            shutil.move(work / "hostile.html", page)
+        for width in (1300, 400):
+            browser.open(page, width=width)
+            browser.value("document.querySelectorAll('details').forEach(part => { part.open = true; })")
+            browser.settle()
+            check(browser.problems() == [], f"{name}, {width} px: no error and no request {browser.problems()[:2]}")
+            fits = browser.value("document.documentElement.scrollWidth <= innerWidth + 1")
+            check(fits, f"{name}, {width} px: the page fits")
+        everything = browser.value("document.body.textContent")
+        check(words in everything, f"{name}: the name is shown as it is written")
+        check("\u202e" not in everything, f"{name}: no override of the direction of text")
+        check(browser.value("document.title") != "taken", f"{name}: and is not run")
+        foreign = browser.value("[...document.images].filter(i => !i.src.startsWith('data:')).length + document.querySelectorAll('script').length")
+        check(foreign == 1, f"{name}: no element but the page's own")
+    # "2501 samples" behind a name in Hebrew stands at its right.
+    browser.open(work / "hostile_file" / "report.html")
+    order = browser.value("""(() => {
+      const walk = document.createTreeWalker(document.querySelector('main'), NodeFilter.SHOW_TEXT);
+      for (let node; (node = walk.nextNode());) {
+        const at = node.data.indexOf('2501 samples'), name = node.data.indexOf('\u05d2');
+        if (at < 0 || name < 0) continue;
+        const left = (k) => { const r = document.createRange(); r.setStart(node, k); r.setEnd(node, k + 1); return r.getBoundingClientRect().left; };
+        return [left(name), left(at), left(at + 3)];
+      }
+    })()""")
+    check(order is not None and order[0] < order[1] < order[2], f"numbers stand behind a name in Hebrew {order}")
 
 
 def main():
@@ -331,6 +555,7 @@ def main():
             "simulate": ("02_identify_a_record", "simulate --duration 5"),
             "compare": ("02_identify_a_record", "compare tip_acceleration.csv --config cantilever.toml"),
             "inspect": ("02_identify_a_record", "inspect tip_acceleration.csv"),
+            "reduce": ("02_identify_a_record", "reduce --config cantilever.toml --reduction guyan"),
         }
         browser = Browser(work / "profile")
         try:
@@ -345,9 +570,15 @@ def main():
                 check_page(browser, work / name, name, screenshots)
             check_values(browser, work / "identify")
             check_estimate(browser, work / "identify")
+            check_peak(browser, work / "identify")
             check_copies(browser, work / "identify")
             check_swing(browser, work / "modes")
+            check_motion(browser, work / "simulate")
+            for name in ("identify", "modes", "compare"):
+                check_paper(browser, work / name, name)
             check_hostile(browser, beamid, work)
+            check_long(browser, beamid, work)
+            check_pictures(browser, work, runs)
             browser.open(work / "identify" / "report.html")
             blue = colours(browser.screenshot(None)).get(bytes((0, 114, 178)), 0)
             check(blue > 200, f"curves are drawn in their colour ({blue} pixels)")

@@ -1,14 +1,18 @@
 """What results hold. Oracles: results.json and the CSV files of the same run, numpy, the normal distribution."""
 import copy
 import csv
+import importlib.util
 import json
+import os
 import pickle
+import subprocess
+import sys
 import unittest
 
 import numpy as np
 
 import beamid
-from support import STEEL, TUTORIAL, beamid as command, working_folder
+from support import SOURCE, STEEL, TUTORIAL, beamid as command, working_folder
 
 
 class Results(unittest.TestCase):
@@ -204,6 +208,56 @@ class Results(unittest.TestCase):
         found = {one["name"]: one for one in short.verdict["objections"]}
         self.assertIn("no_decay", found)
         self.assertIn(found["no_decay"]["sentence"], [one["text"] for one in short.messages])
+
+    def test_a_notebook_shows_records_and_structures(self):
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("no python3-matplotlib")
+        matplotlib.use("Agg")
+        noise = np.random.default_rng(1).standard_normal((1_000_000, 2))
+        noise[7, 0], noise[8, 0] = 40.0, np.nan
+        record = beamid.Record(np.arange(len(noise)) / 1000, acceleration_g=noise, name="<script>x")
+        cell = record._repr_html_()
+        self.assertIn("1000000 samples, 0 to 999.999 s", cell)
+        self.assertIn("<td>column 1</td><td>acceleration [g]</td>", cell)
+        self.assertIn("<td>40</td>", cell)
+        self.assertNotIn("<script", cell)
+        read = beamid.read(TUTORIAL / "tip_acceleration.csv")._repr_html_()
+        self.assertIn("2501 samples, 0 to 10 s", read)
+        frame = beamid.Experiment.read(SOURCE / "docs/tutorials/18_space_frame/tower.toml")
+        cells = [cell, read, frame._repr_html_(), beamid.Beam(**STEEL)._repr_html_(),
+                 beamid.Chain(masses_kg=[1e5] * 3, stiffnesses_n_per_m=[1e8] * 3)._repr_html_()]
+        for shown in cells:
+            self.assertEqual(shown.count("<img "), 1)
+            self.assertLess(len(shown), 200_000)
+        matrices = beamid.System(mass=np.eye(300), stiffness=np.eye(300))._repr_html_()
+        self.assertLess(len(matrices), 2000)
+        self.assertIn("no&lt;b&gt;.csv", beamid.read("no<b>.csv")._repr_html_())
+
+    def test_a_notebook_is_executed(self):
+        for module in ("nbconvert", "ipykernel", "matplotlib"):
+            if importlib.util.find_spec(module) is None:
+                self.skipTest(f"no {module}; packages python3-nbconvert, python3-ipykernel, python3-matplotlib")
+        cells = [f"import beamid\nrecord = beamid.read({str(TUTORIAL / 'tip_acceleration.csv')!r})\nrecord",
+                 f"found = beamid.identify(record, config={str(TUTORIAL / 'cantilever.toml')!r})\nfound", "found.plot()",
+                 f"beamid.Beam(**{STEEL!r})", "found.figures"]
+        code = {"cell_type": "code", "execution_count": None, "metadata": {}, "outputs": []}
+        notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": {"kernelspec": {"name": "python3", "display_name": "", "language": "python"}},
+                    "cells": [{**code, "id": f"c{k}", "source": cell} for k, cell in enumerate(cells)]}
+        with working_folder() as folder:
+            (folder / "a.ipynb").write_text(json.dumps(notebook))
+            made = subprocess.run([sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--output", "b.ipynb", "a.ipynb"],
+                                  capture_output=True, text=True, check=False,
+                                  env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "IPYTHONDIR": str(folder), "HOME": str(folder)})
+            self.assertEqual(made.returncode, 0, made.stderr)
+            outputs = [cell["outputs"] for cell in json.loads((folder / "b.ipynb").read_text())["cells"]]
+        for k in (0, 1, 3):
+            page = "".join(outputs[k][-1]["data"]["text/html"])
+            self.assertIn("<img ", page)
+            self.assertLess(len(page), 200_000)
+        self.assertIn("image/png", outputs[2][-1]["data"])
+        self.assertLess(len("".join(outputs[4][-1]["data"]["text/plain"])), 1000)
 
     def test_a_notebook_runs_nothing_that_a_name_holds(self):
         time = np.arange(1000) / 500.0

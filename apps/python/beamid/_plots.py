@@ -1,5 +1,6 @@
 """Figures of results and records, drawn by Matplotlib in the colours and styles of the command's own pictures."""
 import base64
+import functools
 import html
 import io
 import re
@@ -47,18 +48,85 @@ def plot_figure(found, name, figure):
     return found[next(iter(found)) if name is None else name].plot(figure)
 
 
-def picture(figure, most_bytes=150_000):
-    """An <img> of a figure for notebooks; nothing without Matplotlib, or where it would be large."""
+def picture(draw, caption, most_bytes=100_000):
+    """An <img> for notebooks of what draw() returns, a Matplotlib figure or None; empty without Matplotlib. Where it would be
+    large, with fewer pixels: as base64 it takes 133 kB at most."""
     try:
-        drawn = figure.plot()
+        drawn = draw()
     except ImportError:
         return ""
-    stream = io.BytesIO()
-    drawn.savefig(stream, format="png", dpi=80)
-    if stream.tell() > most_bytes:
-        return ""
-    data = base64.b64encode(stream.getvalue()).decode()
-    return f'<img alt="{html.escape(figure["caption"], quote=True)}" src="data:image/png;base64,{data}">\n'
+    for dpi in (80, 56, 40):
+        png = b"" if drawn is None else _png(drawn, dpi)
+        if 0 < len(png) <= most_bytes:
+            data = base64.b64encode(png).decode()
+            return f'<img alt="{html.escape(caption[:500], quote=True)}" src="data:image/png;base64,{data}">\n'
+    return ""
+
+
+def html_table(head, rows, most_rows=30, most_letters=200):
+    """A table for notebooks, everything in it as text."""
+    def row(cells, tag):
+        return "<tr>" + "".join(f"<{tag}>{html.escape(str(cell)[:most_letters])}</{tag}>" for cell in cells) + "</tr>\n"
+
+    text = "<table>\n" + row(head, "th") + "".join(row(cells, "td") for cells in rows[:most_rows]) + "</table>\n"
+    return text + (f"<p>and {len(rows) - most_rows} more</p>\n" if len(rows) > most_rows else "")
+
+
+def record_cell(record, time, columns, labels):
+    """A record in a notebook: its length, a line for each channel, and its plot. labels: (name, "quantity [unit]")."""
+    rows = []
+    for values, (name, kind) in zip(columns, labels):
+        known = np.asarray(values)[np.isfinite(values)]
+        numbers = (known.min(), known.max(), np.sqrt(np.mean(known ** 2))) if known.size else (np.nan,) * 3
+        rows.append([name, kind, *(f"{number:.5g}" for number in numbers), len(values) - known.size or ""])
+    span = f"{time[0]:g} to {time[-1]:g} s" if len(time) else ""
+    text = f"<p><b>{html.escape(record.name[:200])}</b>: {len(time)} samples, {span}</p>\n"
+    return text + html_table(["channel", "quantity", "lowest", "highest", "rms", "missing"], rows) + picture(record.plot, record.name)
+
+
+def draw_structure(table, keys):
+    """A sketch of a structure, the keys being those of its table; None where it has no places."""
+    keys = {name: [dict(getattr(one, "keywords", one)) for one in values] if name in ("joints", "members", "supports", "bodies") else values
+            for name, values in keys.items()}
+    supports, bodies = keys.get("supports", []), keys.get("bodies", [])
+    if table == "beam":
+        length = keys.get("length_m") or sum(one["length_m"] for one in keys["segments"])
+        lines = [((0, 0), (length, 0))]
+        if "supports" not in keys and keys.get("support", "clamped") != "free":
+            supports = [{"position_m": 0}]
+        bodies = bodies + [{"position_m": length}] * ("tip_mass_kg" in keys)
+        places = [[(one.get("position_m", length), 0) for one in some] for some in (supports, bodies)]
+        label = "x [m]", ""
+    elif table == "chain" and "masses_kg" in keys:
+        heights = np.cumsum(keys.get("heights_m", np.ones(len(keys["masses_kg"]))))
+        masses = [(0, height) for height in heights]
+        lines, places = list(zip([(0, 0), *masses], masses)), [[(0, 0)], masses]
+        label = "", "height [m]" if "heights_m" in keys else "mass"
+    elif table in ("frame", "space_frame"):
+        view = np.array([[1, 0], [0, 1]]) if table == "frame" else np.array([[0.866, 0.5, 0], [-0.211, 0.366, 0.906]])
+        axes = ("x_m", "y_m") if table == "frame" else ("x_m", "y_m", "z_m")
+        seen = [tuple(view @ [one.get(axis, 0.0) for axis in axes]) for one in keys["joints"]]
+        lines = [(seen[one["first"] - 1], seen[one["second"] - 1]) for one in keys["members"]]
+        places = [[seen[one["joint"] - 1] for one in some] for some in (supports, bodies)]
+        label = ("x [m]", "y [m]") if table == "frame" else ("across the view [m]", "up [m]")
+    else:
+        return None
+    figure = _empty((5, 1.4) if table == "beam" else (4, 4), None)
+    axes = figure.subplots()
+    for start, end in lines[:5000]:
+        axes.plot([start[0], end[0]], [start[1], end[1]], color=COLOURS["blue"], linewidth=1.4)
+    for some, mark, colour, name in zip(places, "^o", ("black", "vermillion"), ("support", "mass")):
+        if some:
+            axes.plot(*zip(*some), mark, color=COLOURS[colour], markersize=6, label=name)
+    axes.set_xlabel(label[0], fontsize="small")
+    axes.set_ylabel(label[1], fontsize="small")
+    if table in ("frame", "space_frame"):
+        axes.set_aspect("equal", "datalim")
+    else:
+        (axes.set_yticks if table == "beam" else axes.set_xticks)([])
+    _finish(axes, legend=False)
+    axes.legend(fontsize="small", frameon=False)
+    return figure
 
 
 def plot_record(time, columns, labels, title, figure=None):
@@ -78,11 +146,19 @@ def plot_record(time, columns, labels, title, figure=None):
 
 
 def _empty(size, figure):
-    import matplotlib.pyplot  # pylint: disable=import-outside-toplevel,unused-import  # notebooks then show figures
+    import matplotlib.figure  # pylint: disable=import-outside-toplevel
 
     if figure is None:
-        return matplotlib.figure.Figure(figsize=size, layout="constrained")
+        figure = matplotlib.figure.Figure(figsize=size, layout="constrained")
+        # A notebook displays figures by itself only once pyplot has drawn one, and pyplot does not hold this one.
+        figure._repr_png_ = functools.partial(_png, figure)  # pylint: disable=protected-access
     return figure
+
+
+def _png(figure, dpi=100):
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=dpi)
+    return stream.getvalue()
 
 
 def _in_turn(count):

@@ -1,11 +1,12 @@
 """Vibration records: numpy arrays, or files of any kind that beamid reads."""
+import html
 import os
 
 import numpy as np
 
 from . import _beamid
 from ._errors import InputError, unknown
-from ._plots import plot_record
+from ._plots import plot_record, record_cell
 from ._specification import quantities, tables
 from ._structures import checked
 from ._toml import toml_text
@@ -102,10 +103,18 @@ class Record:
         :param figure: of Matplotlib, such as plt.figure(), to draw in
         :raises ImportError: where Matplotlib is not installed
         """
+        return plot_record(*self._drawn(), self.name, figure)
+
+    def _drawn(self):
+        """Time [s], columns, and of each its name and quantity with its unit."""
         count = len(self._columns[0][0])
         time = np.arange(count) / self.keys["sampling_rate_hz"] if self._time is None else self._time
         labels = [(f"column {k + 1}", f"{quantity} [{symbol}]") for k, (_, (quantity, symbol)) in enumerate(self._columns)]
-        return plot_record(time, [column for column, _ in self._columns], labels, self.name, figure)
+        return time, [column for column, _ in self._columns], labels
+
+    def _repr_html_(self):
+        """For notebooks: length, channels and plot."""
+        return record_cell(self, *self._drawn())
 
     @property
     def numbers(self):
@@ -176,8 +185,18 @@ class RecordFile:
         :param figure: of Matplotlib, such as plt.figure(), to draw in
         :raises ImportError: where Matplotlib is not installed
         """
+        return plot_record(*self._drawn(), self.name, figure)
+
+    def _drawn(self):
         labels = [(channel["name"], f"{channel['quantity']} [{channel['unit']}]") for channel in self.channels]
-        return plot_record(self.time, list(self.samples.T), labels, self.name, figure)
+        return self.time, list(self.samples.T), labels
+
+    def _repr_html_(self):
+        """For notebooks: length, channels and plot; of a file that cannot be read the reason."""
+        try:
+            return record_cell(self, *self._drawn())
+        except InputError as error:
+            return f"<p>{html.escape(repr(self)[:500])}: {html.escape(str(error)[:2000])}</p>"
 
     def replace(self, **keys):
         """The same file, read otherwise."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _beamid
 from ._errors import InputError
-from ._plots import Figure, picture, plot_figure
+from ._plots import Figure, html_table, picture, plot_figure
 
 
 class Estimate(float):
@@ -267,7 +267,7 @@ class Results:
         return _cell(self)
 
 
-def _cell(found, most_rows=30):
+def _cell(found):
     escaped = html.escape
     heard = [one for one in found.messages if one["severity"] in ("warning", "failure")]
     failed = [one for one in heard if one["severity"] == "failure"]
@@ -283,7 +283,7 @@ def _cell(found, most_rows=30):
     names = list(found.estimates)
     if names:
         head, rows = ["", "estimate", "95 % interval", "unit"], []
-        for name in names[:most_rows]:
+        for name in names:
             one = found.estimates[name]
             lower, upper = one.interval()
             label = name if isinstance(name, str) else ", ".join(name)
@@ -292,15 +292,10 @@ def _cell(found, most_rows=30):
         columns = next(iter(found.tables.values()), {})
         head = list(columns)
         rows = [[f"{cell:.6g}" if isinstance(cell, float) else str(cell) for cell in row] for row in zip(*columns.values())]
-    if rows:
-        def row(cells, tag):
-            return "<tr>" + "".join(f"<{tag}>{escaped(str(cell)[:200])}</{tag}>" for cell in cells) + "</tr>\n"
-
-        text += "<table>\n" + row(head, "th") + "".join(row(cells, "td") for cells in rows[:most_rows]) + "</table>\n"
-        missing = max(len(names), len(rows)) - most_rows
-        text += f"<p>and {missing} more</p>\n" if missing > 0 else ""
-    text += "".join(picture(figure) for figure in list(found.figures.values())[:1])
-    return text + f"<details><summary>{escaped(found.command[:2000])}</summary><pre>{escaped(found.report[:100_000])}</pre></details>"
+    text += html_table(head, rows) if rows else ""
+    text += "".join(picture(figure.plot, figure["caption"]) for figure in list(found.figures.values())[:1])
+    report = escaped(found.report[:30_000])  # every letter takes six at most
+    return text + f"<details><summary>{escaped(found.command[:2000])}</summary><pre>{report[:50_000]}</pre></details>"
 
 
 def write_input(content, path):

@@ -4,6 +4,7 @@ import tomllib
 
 from ._errors import InputError, unknown
 from ._matrices import affine_matrices, as_matrices
+from ._plots import draw_structure, html_table, picture
 from ._specification import STRUCTURES, tables, takes_options
 
 
@@ -62,6 +63,20 @@ class Table:
 
     def __repr__(self):
         return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self.keywords.items())})"
+
+    def _repr_html_(self):
+        """For notebooks: its keywords, of lists how many they hold, and a sketch of the structure."""
+        rows = [[key, f"{len(value)}: {value!r:.160}" if isinstance(value, (list, tuple)) else f"{value!r:.160}"]
+                for key, value in self.keywords.items()]
+        table, keys = next(((key, value) for key, value in self.keywords.items() if key in STRUCTURES), (self._table, self.keywords))
+
+        def draw():
+            try:
+                return draw_structure(table, keys)
+            except (KeyError, IndexError, TypeError, ValueError):  # such as a member of a joint that is not there
+                return None
+
+        return f"<p><b>{type(self).__name__}</b></p>\n" + html_table(["key", "value"], rows) + picture(draw, f"sketch of the {table}")
 
 
 class Beam(Table):

@@ -133,11 +133,21 @@ function ticks(axis, range, room) {
   return found.length < 2 && room < 40 ? ticks(axis, range, 2 * room) : found;  // one number alone is no scale
 }
 
-// A column of numbers: {n, from, step}, or {n, at, size} in the figure's bytes.
+// A column of numbers: {n, from, step}, or in the figure's bytes {n, at, size}, with counts of steps or codes of the range
+// (figure_data.hpp). What a code does not hold is not shown as digits.
 function column(spec, data) {
   if (!spec) return null;
-  if ('from' in spec) return Float64Array.from({length: spec.n}, (_, i) => spec.from + i * spec.step);
+  if ('from' in spec && !spec.counts) return Float64Array.from({length: spec.n}, (_, i) => spec.from + i * spec.step);
   const raw = data.slice(spec.at, spec.at + spec.n * spec.size).buffer;
+  if (spec.counts) {
+    let count = 0;
+    return Float64Array.from(spec.size === 1 ? new Uint8Array(raw) : new Uint16Array(raw), (more) => spec.from + spec.step * (count += more));
+  }
+  if (spec.size === 2) {
+    const digits = spec.log ? 0 : 10 ** Math.ceil(-Math.log10(spec.step));
+    return Float32Array.from(new Uint16Array(raw), (code) => code === 65535 ? NaN : spec.log ? Math.exp(spec.low + spec.step * code)
+      : Math.round((spec.low + spec.step * code) * digits) / digits);
+  }
   return spec.size === 4 ? new Float32Array(raw) : new Float64Array(raw);
 }
 function ascending(x) {
@@ -148,6 +158,25 @@ function first(x, wanted) {  // index of the first that is not below
   let low = 0, high = x.length;
   while (low < high) { const middle = (low + high) >> 1; x[middle] < wanted ? low = middle + 1 : high = middle; }
   return low;
+}
+
+const lines = ['line', 'dashed', 'dotted', 'thin'], dashes = {dashed: [9, 5], dotted: [2, 4]};
+// The highest point of an amplitude within 12 pixels, and where the curve passes its 1/sqrt(2) on either side; null
+// where the highest lies at the end of these pixels, as on a slope, or where a side stays above.
+function peak({x, y}, place, at) {
+  const from = first(x, place(at - 12)), until = Math.min(x.length - 1, first(x, place(at + 12)));
+  let top = from;
+  for (let i = from; i <= until; ++i) if (y[i] > y[top]) top = i;
+  if (top <= from || top >= until) return null;
+  const half = y[top] / Math.SQRT2;
+  const side = (step) => {
+    let i = top;
+    while (y[i] > half && y[i] <= y[top]) i += step;
+    if (!(y[i] <= half)) return NaN;
+    return x[i] + (x[i - step] - x[i]) * (half - y[i]) / (y[i - step] - y[i]);
+  };
+  const width = side(1) - side(-1);
+  return width > 0 ? {at: x[top], width} : null;
 }
 
 const panels = [];  // of the whole page, for linked axes
@@ -199,6 +228,7 @@ class Panel {
     context.scale(scale, scale);
     const pen = new CanvasPen(context);
     this.box = this.render(pen, 0, 0, w, h);
+    this.canvas.dataset.box = [this.box.l, this.box.t, this.box.w, this.box.h].join(' ');
     this.canvas.dataset.x = this.view.x.join(' ');
     this.canvas.dataset.y = this.view.y.join(' ');
     if (this.marks) for (const [x, y, colour] of this.marks) pen.path([circle(x, y, 5)], colour, 2);
@@ -286,8 +316,7 @@ class Panel {
       }
       return;
     }
-    const line = ['line', 'dashed', 'dotted', 'thin'].includes(style);
-    if (line) {
+    if (lines.includes(style)) {
       const parts = [];
       let run = [];
       for (const i of this.chosen(curve, y, px, l, w)) {
@@ -296,7 +325,7 @@ class Panel {
         else if (run.length) { parts.push(run); run = []; }
       }
       parts.push(run);
-      pen.path(parts, colour, style === 'thin' ? 0.8 : 1.8, style === 'dashed' ? [9, 5] : style === 'dotted' ? [2, 4] : []);
+      pen.path(parts, colour, style === 'thin' ? 0.8 : 1.8, dashes[style]);
       return;
     }
     const bars = [], stems = [], marks = [], size = style === 'open_points' ? 4.2 : style === 'stems' ? 2.4 : 3.4;
@@ -350,6 +379,11 @@ class Panel {
         if (curve.style === 'intervals') text += `: ${nameX(curve.x[i])} (${number(curve.lower[i])} to ${number(curve.upper[i])})`;
         else if (curve.style !== 'band' && curve.lower) text += ` (${number(curve.lower[i])} to ${number(curve.upper[i])})`;
         row.append(`${plain(curve.label || named(this.y.label))} ${text}`);
+      }
+      const {curve: spectrum} = nearest;
+      if (this.y.log && spectrum.sorted && lines.includes(spectrum.style) && /^frequency/.test(plain(this.x.label))) {
+        const top = peak(spectrum, (at) => value(this.x, this.view.x, (at - box.l) / box.w), mx);
+        if (top) make(this.reading, 'div', {}, `peak ${nameX(top.at)}: half-power width ${number(Number(top.width.toPrecision(3)))} ${ux}`);
       }
       const wide = this.cell.clientWidth;
       this.reading.style.top = `${box.t + 4}px`;
@@ -449,6 +483,20 @@ function mark(kind, x, y, r) {
   return corners.concat(corners.slice(0, 2)).map((c, i) => (i % 2 ? y : x) + r * c);
 }
 
+// A curve's sample in a legend, from x to x + 26 about the height y: with the dashes and marks of the curve.
+function sample(pen, {style, colour, mark: kind}, x, y) {
+  const ink = theme()[colour], w = 26;
+  if (style === 'band') pen.path([[x, y - 5, x + w, y - 5, x + w, y + 5, x, y + 5]], ink, 0, [], 0.35);
+  else if (lines.includes(style)) pen.path([[x, y, x + w, y]], ink, style === 'thin' ? 1.2 : 2, dashes[style]);
+  else if (style === 'arrows') pen.path([[x, y, x + w, y], [x + w - 7, y - 4, x + w, y, x + w - 7, y + 4]], ink, 1.6);
+  else {
+    const dot = [mark(kind, x + w / 2, y, style === 'open_points' ? 4.2 : 3.6)];
+    if (style === 'intervals') pen.path([[x + 3, y, x + w - 3, y]], ink, 1.2);
+    if (style === 'open_points') pen.path(dot, ink, 1.4);
+    else pen.path(dot, ink, 0, [], 1);
+  }
+}
+
 class Figure {
   constructor(element) {
     const spec = JSON.parse(new TextDecoder().decode(bytes(element.dataset.figure)));
@@ -501,7 +549,7 @@ class Figure {
     this.keys = [];
     for (const [label, curve] of this.labels()) {
       const button = make(parent, 'button', {type: 'button', 'aria-pressed': true, title: 'curve on or off'});
-      this.keys.push([make(button, 'span', {class: `key ${curve.style}`}), curve]);
+      this.keys.push([make(button, 'span', {class: 'sample'}), curve]);
       for (const [text, raised] of pieces(label)) make(button, raised > 0 ? 'sup' : raised < 0 ? 'sub' : 'span', {}, text);
       button.addEventListener('click', () => {
         this.off.has(label) ? this.off.delete(label) : this.off.add(label);
@@ -511,7 +559,13 @@ class Figure {
     }
     this.colour();
   }
-  colour() { for (const [key, curve] of this.keys) key.style.color = theme()[curve.colour]; }
+  colour() {
+    for (const [key, curve] of this.keys) {
+      const pen = new SvgPen();
+      sample(pen, curve, 0, 6);
+      key.innerHTML = pen.svg(26, 12);
+    }
+  }
   compose(pen) {
     const width = Math.max(...this.panels.map((panel) => panel.canvas.clientWidth)), height = this.panels[0].height;
     const rows = Math.ceil(this.panels.length / this.columns), shown = [...this.labels()].filter(([label]) => !this.off.has(label));
@@ -521,7 +575,7 @@ class Figure {
       this.panels.forEach((panel, i) => panel.render(to, (i % this.columns) * width, Math.floor(i / this.columns) * height, width, height));
       shown.forEach(([label, curve], i) => {
         const y = rows * height + 16 + 24 * i;
-        to.path([[20, y - 4, 50, y - 4]], theme()[curve.colour], curve.style === 'band' ? 9 : 2);
+        sample(to, curve, 20, y - 4);
         to.text(label, 60, y, {anchor: 'start', colour: theme().ink});
       });
     }};

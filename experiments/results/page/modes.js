@@ -1,4 +1,5 @@
-// Mode shapes that swing, from the glTF model in the page (results/mode_model.hpp): orbit, speed, amplitude.
+// Mode shapes that swing and motions that play, from the glTF model in the page (results/page/swing_model.hpp): orbit,
+// speed, amplitude, and of a motion the time.
 (() => {
 const {make, bytes} = beamid;
 // Dark blue over green to yellow: read by colour-blind readers, in grey as well.
@@ -19,11 +20,21 @@ function model(data) {
     const at = data.byteOffset + start + (part.byteOffset || 0), kind = {5126: Float32Array, 5125: Uint32Array}[accessor.componentType];
     return new kind(data.buffer.slice(at, at + accessor.count * (accessor.type === 'VEC3' ? 12 : 4)));
   };
-  const mesh = json.meshes[0];
-  return {modes: mesh.extras.modes, unit: mesh.extras.moves_m, primitives: mesh.primitives.map((primitive) => ({
+  const mesh = json.meshes[0], {sampler} = json.animations[0].channels[0], {input, output} = json.animations[0].samplers[sampler];
+  const motion = mesh.extras.motion && {...mesh.extras.motion, time: array(input), weights: array(output)};
+  return {modes: mesh.extras.modes, motion, unit: mesh.extras.moves_m, primitives: mesh.primitives.map((primitive) => ({
     kind: primitive.mode, points: array(primitive.attributes.POSITION), indices: array(primitive.indices),
     targets: primitive.targets.map((target) => array(target.POSITION))}))};
 }
+
+// How often a motion goes to and fro [Hz]: sign changes of its strongest shape's weight.
+function frequency({time, weights}) {
+  const count = time.length, shapes = weights.length / count, span = time[count - 1] - time[0];
+  let changes = 0;
+  for (let i = 1; i < count; ++i) if ((weights[i * shapes] > 0) !== (weights[(i - 1) * shapes] > 0)) ++changes;
+  return span > 0 ? Math.max(changes / 2, 0.5) / span : 1;
+}
+const brief = (value) => String(Number(value.toPrecision(3)));
 
 class Swing {
   constructor(element) {
@@ -37,29 +48,45 @@ class Swing {
     const live = document.createElement('div');
     live.className = 'live';
     element.prepend(live);
-    const bar = make(live, 'div', {class: 'bar', role: 'toolbar', 'aria-label': 'mode shapes'});
-    this.choice = make(make(bar, 'label', {}, 'Mode '), 'select');
-    this.model.modes.forEach((mode, i) => make(this.choice, 'option', {value: i}, mode.name));
-    this.choice.addEventListener('change', () => { this.mode = Number(this.choice.value); this.draw(); });
+    const {motion} = this.model, what = motion ? 'motion' : 'mode shape';
+    const bar = make(live, 'div', {class: 'bar', role: 'toolbar', 'aria-label': what});
+    if (!motion) {
+      this.choice = make(make(bar, 'label', {}, 'Mode '), 'select');
+      this.model.modes.forEach((mode, i) => make(this.choice, 'option', {value: i}, mode.name));
+      this.choice.addEventListener('change', () => { this.mode = Number(this.choice.value); this.draw(); });
+      this.beside = make(make(bar, 'label', {}, 'beside it '), 'select');
+      make(this.beside, 'option', {value: ''}, 'none');
+      this.model.modes.forEach((mode, i) => make(this.beside, 'option', {value: i}, mode.name));
+      this.beside.addEventListener('change', () => this.draw());
+    }
+    this.go = motion ? 'Play' : 'Swing';
     this.running = !matchMedia('(prefers-reduced-motion: reduce)').matches;
-    this.play = make(bar, 'button', {type: 'button'}, this.running ? 'Pause' : 'Swing');
-    this.play.addEventListener('click', () => { this.running = !this.running; this.play.textContent = this.running ? 'Pause' : 'Swing'; this.start(); });
+    this.play = make(bar, 'button', {type: 'button'}, this.running ? 'Pause' : this.go);
+    this.play.addEventListener('click', () => { this.running = !this.running; this.play.textContent = this.running ? 'Pause' : this.go; this.start(); });
     const slider = (name, from, to, at, action) => {
       const made = make(make(bar, 'label', {}, `${name} `), 'input', {type: 'range', min: from, max: to, step: (to - from) / 100, value: at});
       made.addEventListener('input', () => { action(Number(made.value)); this.draw(); });
       action(at);
     };
-    slider('speed', 0.1, 2, 0.6, (v) => { this.speed = v; });
+    if (motion) {
+      // The usual cycle takes a second and a half at first; the slider goes from a tenth of that speed to ten times it.
+      const usual = Number((0.67 / frequency(motion)).toPrecision(1)), {time} = motion;
+      slider('speed', -1, 1, 0, (v) => { this.speed = usual * 10 ** v; });
+      this.from = time[0]; this.until = time[time.length - 1]; this.time = this.from;
+      this.clock = make(make(make(live, 'div', {class: 'bar time'}), 'label', {}, 'time '), 'input',
+        {type: 'range', min: this.from, max: this.until, step: (this.until - this.from) / (time.length - 1), value: this.from});
+      this.clock.addEventListener('input', () => { this.time = Number(this.clock.value); this.draw(); });
+    } else slider('speed', 0.1, 2, 0.6, (v) => { this.speed = v; });
     slider('amplitude', 0, 0.4, 0.12, (v) => { this.amplitude = v; });
     const box = make(make(bar, 'label', {}, 'undeformed '), 'input', {type: 'checkbox', checked: ''});
     this.still = true;
     box.addEventListener('change', () => { this.still = box.checked; this.draw(); });
     const button = (text, action) => make(bar, 'button', {type: 'button'}, text).addEventListener('click', action);
     button('Reset', () => { this.turn = [...this.home]; this.nearness = 1; this.draw(); });
-    button('PNG', () => this.canvas.toBlob((blob) => beamid.save('mode.png', blob)));
+    button('PNG', () => this.canvas.toBlob((blob) => beamid.save(`${motion ? 'motion' : 'mode'}.png`, blob)));
     button('glTF', () => beamid.save(`${element.dataset.name}.glb`, new Blob([data], {type: 'model/gltf-binary'})));
-    make(bar, 'span', {class: 'help'}, 'drag: turn · Ctrl + wheel: nearer · arrow keys: turn · space: stop');
-    this.canvas = make(live, 'canvas', {tabindex: 0, role: 'img', class: 'swing', 'aria-label': 'mode shape that swings; arrow keys turn it, space stops it'});
+    make(bar, 'span', {class: 'help'}, `drag: turn · Ctrl + wheel, two fingers: nearer · arrow keys: turn · space: stop${motion ? ' · comma, point: by one picture' : ''}`);
+    this.canvas = make(live, 'canvas', {tabindex: 0, role: 'img', class: 'swing', 'aria-label': `${what} that moves; arrow keys turn it, space stops it`});
     this.caption = make(live, 'div', {class: 'reading still', role: 'status'});
     this.listen();
     new ResizeObserver(() => this.draw()).observe(live);
@@ -79,7 +106,12 @@ class Swing {
     let before = performance.now();
     const step = (now) => {
       this.frame = 0;
-      this.phase += 2 * Math.PI * this.speed * Math.min(0.2, (now - before) / 1000);
+      const passed = this.speed * Math.min(0.2, (now - before) / 1000);
+      this.phase += 2 * Math.PI * passed;
+      if (this.clock) {
+        this.time += passed;
+        if (this.time > this.until) this.time = this.from;
+      }
       before = now;
       this.draw();
       if (this.running && this.seen) this.frame = requestAnimationFrame(step);
@@ -93,7 +125,7 @@ class Swing {
     const c = canvas.getContext('2d');
     c.setTransform(scale, 0, 0, scale, 0, 0);
     c.clearRect(0, 0, w, h);
-    const mode = this.model.modes[this.mode], [yaw, pitch] = this.turn, a = this.amplitude * this.size / this.model.unit;
+    const {motion} = this.model, mode = this.model.modes[this.mode], [yaw, pitch] = this.turn, a = this.amplitude * this.size / this.model.unit;
     const cy = Math.cos(yaw), sy = Math.sin(yaw), cp = Math.cos(pitch), sp = Math.sin(pitch);
     const need = [Math.abs(cy) * this.span[0] + Math.abs(sy) * this.span[2], Math.abs(cp) * this.span[1] + Math.abs(sp) * Math.max(this.span[0], this.span[2])];
     const zoom = this.nearness * Math.min(0.9 * w / (need[0] + 0.2 * this.size), 0.9 * h / (need[1] + 0.3 * this.size));
@@ -103,15 +135,22 @@ class Swing {
       const side = cy * u + sy * s, deep = -sy * u + cy * s;
       return [w / 2 + zoom * side, h / 2 - zoom * (cp * v - sp * deep), sp * v + cp * deep];
     };
-    const cos = Math.cos(this.phase), sin = Math.sin(this.phase);
+    const shares = motion ? this.weights() : this.shares(mode);
+    const other = this.beside && this.beside.value !== '' ? this.shares(this.model.modes[Number(this.beside.value)]) : null;
     const dark = beamid.dark.matches;
+    let farthest = 0;
     for (const {kind, points, indices, targets} of this.model.primitives) {
-      const real = targets[mode.targets[0]], imaginary = mode.targets.length > 1 ? targets[mode.targets[1]] : null;
       const count = points.length / 3, moved = new Array(count), rest = new Array(count), far = new Float32Array(count);
       for (let i = 0; i < count; ++i) {
-        const d = [0, 1, 2].map((k) => cos * real[3 * i + k] - (imaginary ? sin * imaginary[3 * i + k] : 0));
-        const most = [0, 1, 2].map((k) => Math.hypot(real[3 * i + k], imaginary ? imaginary[3 * i + k] : 0));
-        far[i] = Math.hypot(...most) / this.model.unit;
+        const d = [0, 0, 0], most = [0, 0, 0];
+        for (const [target, share] of shares)
+          for (let k = 0; k < 3; ++k) {
+            const by = targets[target][3 * i + k];
+            d[k] += share * by;
+            most[k] = Math.hypot(most[k], by);
+          }
+        far[i] = Math.hypot(...(motion ? d : most)) / this.model.unit;
+        farthest = Math.max(farthest, far[i]);
         moved[i] = seen(points[3 * i] + a * d[0], points[3 * i + 1] + a * d[1], points[3 * i + 2] + a * d[2]);
         if (this.still) rest[i] = seen(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
       }
@@ -121,6 +160,12 @@ class Swing {
           c.beginPath();
           for (let i = 0; i < indices.length; i += 2) { c.moveTo(...rest[indices[i]].slice(0, 2)); c.lineTo(...rest[indices[i + 1]].slice(0, 2)); }
           c.strokeStyle = dark ? '#888' : '#999'; c.lineWidth = 1; c.setLineDash([4, 4]); c.stroke(); c.setLineDash([]);
+        }
+        if (other) {  // the lines of a second shape
+          const place = (i) => seen(...[0, 1, 2].map((k) => points[3 * i + k] + a * other.reduce((sum, [target, share]) => sum + share * targets[target][3 * i + k], 0)));
+          c.beginPath();
+          for (let i = 0; i < indices.length; i += 2) { c.moveTo(...place(indices[i]).slice(0, 2)); c.lineTo(...place(indices[i + 1]).slice(0, 2)); }
+          c.strokeStyle = dark ? '#ff8a4c' : '#d55e00'; c.lineWidth = 2; c.setLineDash([9, 5]); c.stroke(); c.setLineDash([]);
         }
         c.lineWidth = 3;
         for (let i = 0; i < indices.length; i += 2) {
@@ -153,19 +198,43 @@ class Swing {
     c.fillStyle = dark ? '#ddd' : '#222';
     c.font = '12px "DejaVu Sans", Verdana, sans-serif';
     c.fillText('colour: displacement, 0 to the largest', 12, h - 27);
-    const damping = 'damping_ratio' in mode ? `, damping ratio ${Number((100 * mode.damping_ratio).toPrecision(4))} %` : '';
-    this.caption.textContent = `${mode.name}${damping}`;
     canvas.dataset.mode = this.mode;
+    if (motion) {
+      this.clock.value = this.time;
+      canvas.dataset.time = this.time;
+      const digits = Math.max(0, Math.ceil(-Math.log10((this.until - this.from) / (motion.time.length - 1))));
+      this.caption.textContent = `${this.time.toFixed(Math.min(digits, 9))} s: largest displacement ${brief(farthest * motion.largest_m)} m of ` +
+        `${brief(motion.largest_m)} m; drawn ${brief(a * this.model.unit / motion.largest_m)} times as large, at ${brief(this.speed)} times the speed`;
+      return;
+    }
+    const damping = 'damping_ratio' in mode ? `, damping ratio ${Number((100 * mode.damping_ratio).toPrecision(4))} %` : '';
+    this.caption.textContent = `${mode.name}${damping}${other ? `; dashed: ${this.model.modes[Number(this.beside.value)].name}` : ''}`;
+  }
+  // Targets and their shares at the present phase: cos in phase, -sin in quadrature.
+  shares(mode) {
+    const share = [Math.cos(this.phase), -Math.sin(this.phase)];
+    return mode.targets.map((target, i) => [target, share[i]]);
+  }
+  // The same of a motion at the present time, linear between its samples.
+  weights() {
+    const {time, weights} = this.model.motion, count = time.length, shapes = weights.length / count;
+    const place = Math.max(0, Math.min(count - 1, (this.time - this.from) / (this.until - this.from) * (count - 1)));
+    const i = Math.min(count - 2, Math.floor(place)), rest = place - i;
+    return Array.from({length: shapes}, (_, k) => [k, (1 - rest) * weights[i * shapes + k] + rest * weights[(i + 1) * shapes + k]]);
   }
   listen() {
     const canvas = this.canvas;
-    canvas.addEventListener('pointerdown', (event) => { canvas.setPointerCapture(event.pointerId); this.drag = [event.clientX, event.clientY]; });
+    const held = new Map();  // pointers that are down
+    const span = () => { const [[x, y], [u, v]] = [...held.values()]; return Math.max(20, Math.hypot(x - u, y - v)); };
+    canvas.addEventListener('pointerdown', (event) => { canvas.setPointerCapture(event.pointerId); held.set(event.pointerId, [event.clientX, event.clientY]); });
     canvas.addEventListener('pointermove', (event) => {
-      if (!this.drag) return;
-      this.turnBy((event.clientX - this.drag[0]) / 150, (event.clientY - this.drag[1]) / 150);
-      this.drag = [event.clientX, event.clientY];
+      if (!held.has(event.pointerId)) return;
+      const [x, y] = held.get(event.pointerId), before = held.size === 2 && span();
+      held.set(event.pointerId, [event.clientX, event.clientY]);
+      if (before) this.nearer(span() / before);
+      else this.turnBy((event.clientX - x) / 150, (event.clientY - y) / 150);
     });
-    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, () => { this.drag = null; });
+    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, (event) => held.delete(event.pointerId));
     canvas.addEventListener('wheel', (event) => {
       if (!event.ctrlKey && document.activeElement !== canvas) return;
       event.preventDefault();
@@ -175,7 +244,10 @@ class Swing {
       const turns = {ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1]};
       if (event.key in turns) this.turnBy(...turns[event.key]);
       else if (event.key === ' ') this.play.click();
-      else if (event.key === '+' || event.key === '-') this.nearer(event.key === '+' ? 1.18 : 0.85);
+      else if (this.clock && (event.key === ',' || event.key === '.')) {
+        this.time = Math.max(this.from, Math.min(this.until, this.time + (event.key === ',' ? -1 : 1) * Number(this.clock.step)));
+        this.draw();
+      } else if (event.key === '+' || event.key === '-') this.nearer(event.key === '+' ? 1.18 : 0.85);
       else return;
       event.preventDefault();
     });

@@ -86,8 +86,7 @@ double extent_of(const SwingModel& model) {
 }
 
 void check_model(const SwingModel& model) {
-  if (model.parts.empty() || model.modes.empty())
-    throw std::invalid_argument("a model without parts or modes; expected one of each at least");
+  if (model.parts.empty()) throw std::invalid_argument("a model without parts; expected one at least");
   const std::size_t motions = model.parts[0].motion.size();
   for (const SwingModel::Part& part : model.parts) {
     bool fits = part.points.cols() > 0 && !part.corners.empty() && part.motion.size() == motions;
@@ -119,9 +118,25 @@ void add_animation(const SwingModel::Mode& mode, std::size_t motions, int times,
                                      {"samplers", GltfJson::array({sampler})}});
 }
 
-}  // namespace
+/// The animation of a motion, and its scale for the page.
+void add_history(const MotionHistory& history, GltfFile& file, GltfJson& extras) {
+  const double scale = history.largest > 0 ? 1.0 / history.largest : 1.0;
+  std::vector<float> times, weights;
+  for (Eigen::Index k = 0; k < history.time.size(); ++k) {
+    times.push_back(static_cast<float>(history.time[k]));
+    for (const double weight : history.weights.col(k)) weights.push_back(static_cast<float>(scale * weight));
+  }
+  GltfJson sampler{{"input", file.numbers(times, true)},
+                   {"output", file.numbers(weights, false)},
+                   {"interpolation", "LINEAR"}};
+  GltfJson channel{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
+  file.json["animations"].push_back({{"name", "motion"},
+                                     {"channels", GltfJson::array({channel})},
+                                     {"samplers", GltfJson::array({sampler})}});
+  extras["motion"] = {{"largest_m", history.largest}, {"residual_percent", history.residual_percent}};
+}
 
-std::string binary_gltf(const SwingModel& model) {
+std::string written(const SwingModel& model, const MotionHistory* history) {
   check_model(model);
   const std::size_t motions = model.parts[0].motion.size();
   const double extent = extent_of(model), moves = gltf_amplitude * (extent > 0 ? extent : 1.0);
@@ -147,10 +162,11 @@ std::string binary_gltf(const SwingModel& model) {
       primitive["targets"].push_back({{"POSITION", file.places(moves * motion)}});
     mesh["primitives"].push_back(std::move(primitive));
   }
+  if (history) add_history(*history, file, mesh["extras"]);
   std::vector<float> seconds;
   for (int step = 0; step <= gltf_steps; ++step)
     seconds.push_back(static_cast<float>(gltf_period * step / gltf_steps));
-  const int times = file.numbers(seconds, true);
+  const int times = model.modes.empty() ? -1 : file.numbers(seconds, true);
   for (const SwingModel::Mode& mode : model.modes) {
     GltfJson described{{"name", mode.name}, {"frequency_hz", mode.frequency_hz}, {"targets", {mode.real}}};
     if (mode.damping_ratio) described["damping_ratio"] = *mode.damping_ratio;
@@ -171,6 +187,23 @@ std::string binary_gltf(const SwingModel& model) {
   append_bytes(bytes, static_cast<std::uint32_t>(file.bytes.size()));
   bytes.append("BIN\0", 4);
   return bytes + file.bytes;
+}
+
+}  // namespace
+
+std::string binary_gltf(const SwingModel& model) {
+  if (model.modes.empty()) throw std::invalid_argument("a model without modes; expected one at least");
+  return written(model, nullptr);
+}
+
+std::string binary_gltf(const SwingModel& model, const MotionHistory& history) {
+  const auto motions = static_cast<Eigen::Index>(model.parts.empty() ? 0 : model.parts[0].motion.size());
+  if (history.time.size() == 0 || history.weights.rows() != motions ||
+      history.weights.cols() != history.time.size())
+    throw std::invalid_argument(
+        fmt::format("a motion of {} samples with {} x {} weights; expected {} x the samples, one at least",
+                    history.time.size(), history.weights.rows(), history.weights.cols(), motions));
+  return written(model, &history);
 }
 
 }  // namespace beamid::experiments

@@ -1,4 +1,4 @@
-// Mode shapes as a model that swings: glTF 2.0, read by viewers and slides, drawn by
+// Mode shapes as a model that swings, and a motion in time: glTF 2.0, read by viewers and slides, drawn by
 // experiments/results/page/modes.js.
 #pragma once
 
@@ -29,6 +29,14 @@ struct SwingModel {
   std::vector<Mode> modes;
 };
 
+/// A motion in time: the sum of a model's motions by their weights.
+struct MotionHistory {
+  Eigen::VectorXd time;           ///< (samples) [s], ascending
+  Eigen::MatrixXd weights;        ///< (motions x samples) [m]
+  double largest = 0.0;           ///< displacement of any point at any time [m]
+  double residual_percent = 0.0;  ///< of the motion, what its shapes do not hold (root mean square)
+};
+
 /// The bytes of a .glb file: one mesh with a morph target for each motion and an animation of two seconds for
 /// each mode. A target moves its points by a tenth of the structure's largest extent.
 ///
@@ -36,5 +44,11 @@ struct SwingModel {
 /// "moves_m", the tenth. The same model gives the same bytes.
 /// @throws std::invalid_argument on parts whose motions have other sizes than their points, and without any.
 std::string binary_gltf(const SwingModel& model);
+
+/// The same with one animation, of the motion at its own speed; the model needs no modes. It is magnified:
+/// its largest displacement is a tenth of the structure's largest extent. `extras` hold "moves_m" and
+/// "motion" with "largest_m" [m], the displacement that this stands for, and "residual_percent".
+/// @throws std::invalid_argument on a history without samples, or with other numbers of weights than motions.
+std::string binary_gltf(const SwingModel& model, const MotionHistory& history);
 
 }  // namespace beamid::experiments

@@ -65,6 +65,8 @@ Results modes_study(const Experiment& experiment, Eigen::Index count, bool surfa
 /// The table sensors, record.csv, results.json, a figure of each sensor's history and spectrum, and the
 /// motion of the whole beam for ParaView where frames were kept.
 /// @param surface draw the real sections instead of a line.
-Results report(const Experiment& experiment, const std::shared_ptr<const SimulatedTest>& test, bool surface);
+/// @param motion what the page plays and motion.glb holds; none: neither.
+Results report(const Experiment& experiment, const std::shared_ptr<const SimulatedTest>& test, bool surface,
+               const std::shared_ptr<const WholeMotion>& motion = {});
 
 }  // namespace beamid::experiments

@@ -14,6 +14,7 @@
 #include "experiments/record/record.hpp"
 #include "experiments/record/units.hpp"
 #include "experiments/results/figure.hpp"
+#include "experiments/results/mode_figure.hpp"
 #include "experiments/results/result_directory.hpp"
 #include "experiments/results/vtk/field_history.hpp"
 #include "experiments/rig/simulated_test.hpp"
@@ -201,7 +202,8 @@ Figure sensor_figure(const SimulatedTest& test, std::size_t i, const std::string
 
 }  // namespace
 
-Results report(const Experiment& experiment, const std::shared_ptr<const SimulatedTest>& test, bool surface) {
+Results report(const Experiment& experiment, const std::shared_ptr<const SimulatedTest>& test, bool surface,
+               const std::shared_ptr<const WholeMotion>& motion) {
   const Simulation& settings = experiment.simulation;
   Results results;
   results.command = "simulate";
@@ -235,6 +237,14 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Simulat
   const std::vector<std::string> columns = column_names(test->record);
   for (std::size_t i = 0; i < test->sensors.size(); ++i)
     results.figures.push_back(sensor_figure(*test, i, columns[i + 1]));
+  if (motion && motion->time.size() > 1)
+    results.attachments.push_back(
+        {{"motion.glb"},
+         [test, motion, structure = experiment.structure](const std::filesystem::path& folder) {
+           const auto [model, history] =
+               motion_model(Picture(structure, test->system), motion->time, motion->displacement);
+           write_file(folder / "motion.glb", binary_gltf(model, history));
+         }});
   if (!test->response.frames.empty() && !test->system.mesh.nodes.empty())
     results.attachments.push_back(
         {field_history_files(static_cast<Index>(test->response.frames.size())),

@@ -402,6 +402,11 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Reducti
   results.attachments.push_back({{"comac.csv"}, [csv = to_csv(comac_table(all))](const fs::path& folder) {
                                    write_file(folder / "comac.csv", csv);
                                  }});
+  if (has_mesh)
+    results.attachments.push_back(
+        {{"modes.glb"}, [comparison, structure = experiment.structure](const fs::path& folder) {
+           write_file(folder / "modes.glb", binary_gltf(paired_modes(structure, *comparison)));
+         }});
   if (drawn) results.attachments.push_back(meshes(experiment, comparison));
   results.timing.emplace_back("mesh_decay", all.behaviour.decay_seconds);
   for (const ComparedReduction& one : all.reductions) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/config/experiment.hpp"
+#include "experiments/results/page/swing_model.hpp"
 #include "experiments/results/results.hpp"
 #include "experiments/text/progress.hpp"
 #include "fem/assembly.hpp"
@@ -216,6 +217,9 @@ Results report(const Experiment& experiment, const std::shared_ptr<const Reducti
 /// Its parts.
 Table reduction_table(const ReductionComparison& all);
 Table equivalent_table(const ReductionComparison& all);
+/// The lowest modes of the mesh, and behind each its partners of the reductions, with their MAC, as one
+/// model: so many as twelve shapes allow. The system needs a mesh.
+SwingModel paired_modes(const fem::Structure& structure, const ReductionComparison& all);
 Table frequency_table(const ReductionComparison& all);
 Table mac_table(const ReductionComparison& all);
 Table comac_table(const ReductionComparison& all);                        ///< a row for each node

@@ -83,6 +83,32 @@ TEST(ModeModel, SwingsAsTheFigureIsDrawnAndCarriesBodies) {
   EXPECT_EQ(binary_gltf(model), binary_gltf(model));
 }
 
+// Oracle: the motion itself, 3 mm of the first sine and 1 mm of the second, each at its own frequency.
+TEST(MotionModel, HoldsAMotionByItsOwnShapes) {
+  const fem::StructuralSystem system = pinned(6);
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(200, 0, 2);
+  Eigen::MatrixXd histories(2, time.size());
+  histories << 0.003 * (9 * time.array()).cos().matrix().transpose(),
+      0.001 * (36 * time.array()).sin().matrix().transpose();
+  const auto [model, history] = motion_model(Picture(system), time, sines(system, 2) * histories);
+  EXPECT_EQ(history.weights.rows(), 2);
+  EXPECT_LT(history.residual_percent, 1e-4);
+  const SwingModel::Part& axis = model.parts.back();
+  double largest = 0;
+  for (Eigen::Index sample = 0; sample < time.size(); ++sample) {
+    const Eigen::Matrix3Xd moved =
+        history.weights(0, sample) * axis.motion[0] + history.weights(1, sample) * axis.motion[1];
+    for (Eigen::Index i = 0; i < axis.points.cols(); ++i) {
+      const double place = std::numbers::pi * axis.points(0, i) / 2.0;
+      EXPECT_NEAR(moved(2, i),
+                  histories(0, sample) * std::sin(place) + histories(1, sample) * std::sin(2 * place), 2e-5);
+    }
+    largest = std::max(largest, moved.row(2).cwiseAbs().maxCoeff());
+  }
+  EXPECT_NEAR(history.largest, largest, 0.02 * largest);  // it is taken at the nodes
+  EXPECT_THROW(motion_model(Picture(system), time, histories), std::invalid_argument);
+}
+
 TEST(ModeFigure, IsDrawnAsPngAndSvg) {
   TemporaryFolder folder;
   const fem::StructuralSystem system = pinned(20);

@@ -38,6 +38,9 @@ TEST(Base64, GivesThePublishedVectors) {
 TEST(EscapedText, ShowsWhatHtmlWouldTakeForItsOwn) {
   EXPECT_EQ(escaped("K < 3 & \"ξ\" > 2"), "K &lt; 3 &amp; &quot;ξ&quot; &gt; 2");
   EXPECT_EQ(escaped("a\xff\xc3\x1b[2J"), "aÿÃ[2J");
+  // Unicode's bidirectional algorithm: a number behind Hebrew would stand at its left.
+  EXPECT_EQ(escaped("\u05d0\u05d1 \u05d2: 12 \u0627"), "\u05d0\u05d1 \u05d2\u200e: 12 \u0627\u200e");
+  EXPECT_EQ(escaped(unescaped(escaped("\u05d0 1"))), escaped("\u05d0 1"));
   for (const std::string text : {"&lt;", "<&>\"", "plain", "&amp;lt;"})
     EXPECT_EQ(unescaped(escaped(text)), text);
 }
@@ -78,6 +81,23 @@ TEST(ReportPage, IsTakenApartAgain) {
     EXPECT_EQ(found[i].html, sections[i].html);
   }
   EXPECT_TRUE(sections_of("<html><h1>another page</h1></html>").empty());
+}
+
+// A page alone has its contents behind the verdict, a joined one before its sections.
+TEST(ReportPage, HasContentsBehindTitleAndVerdictAndIsTakenApartWithoutThem) {
+  Results results = small_results(1.0);
+  for (const char* heading : {"The finding", "Tables", "Doubts"}) results.heading(heading);
+  const ReportSection section = report_section(results, ".");
+  const std::string page = report_page({section}), joined = report_page({section, section});
+  EXPECT_THAT(page, HasSubstr("<body class=\"listed\">"));
+  EXPECT_LT(page.find("class=\"verdict"), page.find("<nav"));
+  EXPECT_LT(page.find("<nav"), page.find("First line"));
+  EXPECT_LT(joined.find("<nav"), joined.find("<h1>"));
+  for (const std::string& whole : {page, joined}) {
+    const std::vector<ReportSection> found = sections_of(whole);
+    EXPECT_EQ(found.at(0).html, section.html);
+    EXPECT_EQ(report_page(found), whole);
+  }
 }
 
 TEST(ReportPage, ShowsWarningsAndFailuresInBoxes) {
@@ -177,6 +197,13 @@ TEST(ReportPage, BeginsWithAVerdictOfColourAndWord) {
   EXPECT_EQ(foreign_tag(report_section(results, ".").html), "");
 }
 
+TEST(ReportPage, HasAVerdictOfWholeSentences) {
+  Results results = small_results(1.0);
+  const std::string first = "One mode lies at 1.25 Hz, " + std::string(150, 'x') + ".";
+  results.warning(first + " And " + std::string(150, 'y') + ".");
+  EXPECT_THAT(report_section(results, ".").html, HasSubstr("<b>With warnings.</b> " + first + "</p>"));
+}
+
 TEST(ReportPage, FoldsWhatComesAfterTheAnswerUnlessItWarns) {
   Results results = small_results(1.0);
   for (const char* heading : {"Details", "Doubts"}) results.heading(heading);
@@ -194,6 +221,18 @@ TEST(ReportPage, LetsNoOtherScriptRun) {
   EXPECT_EQ(script.policy.size(), std::string("'sha256-'").size() + 44);
   EXPECT_EQ(page.find("<script"), page.rfind("<script"));
   EXPECT_THAT(page, HasSubstr(script.element));
+}
+
+// Oracle: the grammar of paths (SVG 1.1, 8.3), by hand: to a tenth of a pixel, from the rounded point before.
+TEST(PictureAddress, HoldsThePictureInFewerBytes) {
+  const std::string found = picture_address(
+      "<path d='M10.04,5.00 L10.50,4.96\n\t\tL10.96,5.46  ' fill=\"#fff\"/>\n <path  d='M1,2 C3,4 5,6 "
+      "7,8'/><a d='M-1,0 L0,0 "
+      "Z L2,2'/><a d='M1.0,-0.04 L1.06,3 Z'/>");
+  EXPECT_EQ(found,
+            "data:image/svg+xml,%3Cpath d='M10 5l.5 0l.5 .5' fill=%22%23fff%22/%3E %3Cpath d='M1,2 C3,4 5,6 "
+            "7,8'/%3E%3Ca d='M-1,0 L0,0 "
+            "Z L2,2'/%3E%3Ca d='M1 0l.1 3z'/%3E");
 }
 
 Figure drawn_figure(Eigen::Index samples) {
@@ -232,11 +271,54 @@ TEST(FigureAttributes, KeepLogarithmicAxesAndStateEquallySpacedTimesByTheirStep)
   EXPECT_FALSE(figure.contains("thinned"));
 }
 
-TEST(FigureAttributes, ThinAMillionSamplesToWhatThePageHolds) {
-  const std::string attributes = figure_attributes({drawn_figure(1'000'000)}).at(0);
+Figure noisy_figure(Eigen::Index samples) {
+  const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(samples, 0, 10),
+                        noise = Eigen::VectorXd::Random(samples);
+  return {"noise", {Panel{"", {"time [s]"}, {"w [m]"}}.line("", time, noise)}};
+}
+
+// Of equally spaced samples the page holds all up to 375 000 of 2 bytes (as base64), of a million an
+// envelope.
+TEST(FigureAttributes, KeepEverySampleAsLongAsTwoBytesOfEachFit) {
+  const nlohmann::json all = figure_json(figure_attributes({noisy_figure(300'000)}).at(0));
+  EXPECT_EQ(all["panels"][0]["curves"][0]["y"]["n"], 300'000);
+  EXPECT_EQ(all["panels"][0]["curves"][0]["y"]["size"], 2);
+  EXPECT_EQ(all["thinned"],
+            "All 300000 points of the longest curve are here, rounded to 1/65 534 of their range.");
+  const std::string attributes = figure_attributes({noisy_figure(1'000'000)}).at(0);
   EXPECT_LE(attributes.size(), most_page_bytes);
   EXPECT_GT(attributes.size(), most_page_bytes / 2);
-  EXPECT_THAT(figure_json(attributes)["thinned"].get<std::string>(), HasSubstr("1000000 points"));
+  const nlohmann::json figure = figure_json(attributes), &curve = figure["panels"][0]["curves"][0];
+  EXPECT_EQ(curve["x"]["size"], 1);
+  EXPECT_EQ(curve["x"]["counts"], true);
+  EXPECT_GT(curve["y"]["n"].get<int>(), 150'000);
+  EXPECT_THAT(figure["thinned"].get<std::string>(), HasSubstr("1000000 points"));
+}
+
+// Six cycles at the beginning of a long record are shown by all their samples.
+TEST(FigureAttributes, KeepWhatAPanelShowsAtFirst) {
+  Figure figure = noisy_figure(200'000);
+  figure.panels[0].across(2, 2.1);
+  const nlohmann::json curve =
+      figure_json(figure_attributes({figure}, 100'000).at(0))["panels"][0]["curves"][0];
+  const auto count = curve["y"]["n"].get<int>();
+  const nlohmann::json plain = figure_json(figure_attributes({noisy_figure(200'000)}, 100'000).at(0));
+  EXPECT_GT(count, 2000 + plain["panels"][0]["curves"][0]["y"]["n"].get<int>() / 2);
+  EXPECT_LT(count, 40'000);
+}
+
+// What is kept of a long curve shows the same picture: its intervals are parts of those of a picture.
+TEST(Thinned, KeepsThePictureOfAMillionSamples) {
+  Figure figure = noisy_figure(1'000'000);
+  figure.panels[0].across(0, 10);
+  const auto picture = [](const Curve& curve) {
+    const Eigen::VectorXd y = curve.y(envelope(curve.x, curve.y, false));
+    return std::vector<double>(y.begin(), y.end());
+  };
+  const Panel kept = thinned(figure.panels[0]);
+  EXPECT_NEAR(static_cast<double>(kept.curves[0].x.size()), static_cast<double>(most_kept_points), 5.0);
+  EXPECT_EQ(kept.curves[0].points, 1'000'000);
+  EXPECT_EQ(picture(kept.curves[0]), picture(figure.panels[0].curves[0]));
 }
 
 // What `identify` draws of a record: the whole, its reproduction, and what is left, thin lines among them.
@@ -312,6 +394,37 @@ TEST(BinaryGltf, HoldsAnAnimationForEachModeAndPhasesOfComplexOnes) {
   EXPECT_NEAR(weights[2 * 8], 0, 1e-6);
   EXPECT_FLOAT_EQ(weights[2 * 8 + 1], -1);
   model.parts[0].corners = {0, 2};
+  EXPECT_THROW(binary_gltf(model), std::invalid_argument);
+}
+
+// Oracle: the same layout; a motion of two shapes at three instants, largest 4 mm, drawn as a tenth of 2 m.
+TEST(BinaryGltf, HoldsAMotionAtItsOwnSpeed) {
+  SwingModel model;
+  Eigen::Matrix3Xd points(3, 2), motion(3, 2);
+  points << 0, 2, 0, 0, 0, 0;
+  motion << 0, 0, 0, 0, 0, 1;
+  model.parts = {{SwingModel::Kind::lines, points, {0, 1}, {motion, -motion}}};
+  MotionHistory history{Eigen::Vector3d(1.0, 1.5, 2.0), Eigen::MatrixXd::Zero(2, 3), 0.004, 0.02};
+  history.weights << 0.004, 0, -0.002, 0, 0.001, 0;
+  const std::string bytes = binary_gltf(model, history);
+  const std::size_t length = word_at(bytes, 12), start = 20 + length + 8;
+  const nlohmann::json json = nlohmann::json::parse(bytes.substr(20, length));
+  EXPECT_EQ(json["animations"].size(), 1u);
+  EXPECT_EQ(json["meshes"][0]["extras"]["motion"]["largest_m"], 0.004);
+  const auto number = [&](const char* end, std::size_t place) {
+    const int accessor = json["animations"][0]["samplers"][0][end].get<int>();
+    float value = 0;
+    std::memcpy(
+        &value,
+        bytes.data() + start + json["bufferViews"][accessor]["byteOffset"].get<std::size_t>() + 4 * place, 4);
+    return value;
+  };
+  EXPECT_FLOAT_EQ(number("input", 1), 1.5f);
+  EXPECT_FLOAT_EQ(number("output", 0), 1.0f);
+  EXPECT_FLOAT_EQ(number("output", 3), 0.25f);
+  EXPECT_FLOAT_EQ(number("output", 4), -0.5f);
+  history.weights.conservativeResize(1, 3);
+  EXPECT_THROW(binary_gltf(model, history), std::invalid_argument);
   EXPECT_THROW(binary_gltf(model), std::invalid_argument);
 }
 

@@ -30,6 +30,9 @@ TEST(CleanText, DropsWhatCommandsATerminalAPageOrAPlot) {
             "C1 31m and 31m");
   EXPECT_EQ(clean_text("two\r\nlines\tand\ra tab"), "two lines and a tab");
   EXPECT_EQ(clean_lines("two\r\nlines\x1b[m\n"), "two\nlines[m\n");
+  // An override shows "gpj.exe" as "exe.jpg".
+  EXPECT_EQ(clean_text("a\u202egpj.exe\u2067b\u2069"), "agpj.exeb");
+  EXPECT_EQ(clean_text("\u05d0\u05d1 \u200e1"), "\u05d0\u05d1 \u200e1");
   EXPECT_EQ(find_control("ξ ok"), std::string::npos);
   EXPECT_EQ(find_control("ξ\x1b"), 2u);
 }
