@@ -59,6 +59,24 @@ bool has_small_residual(const ComparedRun& run);
 /// are not linear and where the record holds no mode of the model.
 Eigen::VectorXd reduction_bias(const RunContext& context, const ComparedRun& run);
 
+/// Predicted relative error of one parameter by a reduction of some order, from what a free decay holds.
+struct OrderError {
+  std::string method;         ///< of the reduction
+  Eigen::Index order = 0;     ///< r, coordinates of the model
+  std::size_t parameter = 0;  ///< its place in the run
+  double bias = 0.0;          ///< by the frequencies and damping that the reduction moves
+  double others = 0.0;        ///< root mean square over the phases of the omitted modes: coloured noise
+  double deviation = 0.0;     ///< the Cramer-Rao bound in the noise of the sensors, by the modes kept
+
+  double expected() const;  ///< of all three, as squares add
+};
+
+/// Of every parameter of a run, for each order up to that of the highest mode in the record, eight at most,
+/// of the run's own reduction, or of modal_truncation where its order is no number. Empty where
+/// reduction_bias() is for want of a parameter or a linear model, of driven records, and where the record
+/// holds fewer than two modes.
+std::vector<OrderError> errors_by_order(const RunContext& context, const ComparedRun& run);
+
 /// A sentence where the mode that a run is identified by is moved by more than three of the frequency's
 /// standard deviations; else empty, as where reduction_bias() is.
 std::string reduction_error(const RunContext& context, const ComparedRun& run);
@@ -67,10 +85,11 @@ std::string reduction_error(const RunContext& context, const ComparedRun& run);
 
 /// A sentence where the scheme of a run, by its closed form (discretisation_bias.hpp), moves the stiffness of
 /// a mode that holds a hundredth of the record by more than the narrowest interval of the run: what is
-/// determined by that mode comes out wrong by as much. Empty otherwise, for exact schemes and for models that
-/// are not linear. Of damping likewise: the scheme of the run turns each pole of another motion,
-/// log(g(lambda_f dt)) / dt, into that of the model as found; said where the damping ratio of a mode that the
-/// record holds differs by more than the narrowest interval of a damping.
+/// determined by that mode comes out wrong by as much. Empty otherwise, and for exact schemes. Of damping
+/// likewise: the scheme of the run turns each pole of another motion, log(g(lambda_f dt)) / dt, into that of
+/// the model as found, forward Euler C into C + dt K; said where the damping ratio of a mode that the record
+/// holds differs by more than the narrowest interval of a damping. Of a model that is not linear the poles
+/// are those at rest.
 ///
 /// A mode holds what the outputs' spectra do within a tenth of its frequency; modes above half the sampling
 /// rate are left out.

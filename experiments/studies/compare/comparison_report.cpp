@@ -22,6 +22,7 @@
 #include "experiments/results/results.hpp"
 #include "experiments/results/table.hpp"
 #include "experiments/studies/identify/report.hpp"
+#include "experiments/studies/reduce/report.hpp"
 
 namespace beamid::experiments {
 
@@ -429,6 +430,8 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
     if (!alone) results.table(parameter_table(comparison, name));
   add_clocks(results, comparison);
   if (const std::string choice = choice_text(comparison, biases); !choice.empty()) results.paragraph(choice);
+  if (const ComparedRun* run = reference_run(comparison))
+    add_orders({experiment, comparison.compared, comparison.analysis}, *run, results);
   for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
   results.notes(comparison.compared.notes);
   results.figures = figures(comparison);

@@ -95,6 +95,15 @@ struct LowestComac {
 };
 LowestComac lowest_comac(const Eigen::VectorXd& comac);
 
+// What an identification with a reduction gets wrong, by the order of the reduction.
+
+struct RunContext;
+struct ComparedRun;
+
+/// Errors predicted for each parameter and order (errors_by_order()) as a table and as "orders" in the
+/// values, and a sentence with the order for which they are least; neither where no order is to be chosen.
+void add_orders(const RunContext& context, const ComparedRun& run, Results& results);
+
 // What `beamid reduce` prints and writes.
 
 // Frequency responses of two models, sampled so that no resonance of either is missed.
