@@ -130,8 +130,10 @@ const Schema<DescribedRecord>& record_keys() {
                {"skip", MalformedRows::skip},
                {"missing", MalformedRows::as_missing}},
               "rows with text among the numbers or of another length: refused at their place, or omitted, "
-              "counted and located; `\"missing\"` takes cells that are empty, `nan`, `na` or `null` "
-              "for samples that were not read, and refuses the rest",
+              "counted and located; `\"missing\"` takes cells that are empty, `nan`, `na` or `null`, and "
+              "rows "
+              "that times printed to whole intervals lack, for samples that were not read, and refuses the "
+              "rest",
               "\"skip\"")
           .choice(
               "missing_input", &R::missing_input,

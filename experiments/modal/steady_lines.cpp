@@ -122,14 +122,15 @@ SteadyLines steady_lines(const MatrixXd& outputs, double interval) {
 }
 
 std::optional<DriftFree> without_drift(const Record& record, double lowest_hz) {
-  constexpr double least = 0.02;
+  constexpr double least = 0.02, steep = 0.8;
   const double interval = record.interval();
   DriftFree found{record, 1.0 / lowest_hz};
+  double steepness = 0.0;
   for (const auto& row : record.samples.rowwise()) {
     const Drift drift = drift_beneath(row.transpose(), interval, found.period);
-    if (drift.share > found.share) found.share = drift.share, found.steepness = drift.steepness;
+    if (drift.share > found.share) found.share = drift.share, steepness = drift.steepness;
   }
-  if (found.share < least) return {};
+  if (found.share < least || steepness > steep) return {};
   const auto edge = static_cast<Index>(std::lround(found.period / interval));
   const Index left = record.size() - 2 * edge;
   found.record.time = record.time.segment(edge, left);

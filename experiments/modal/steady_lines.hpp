@@ -41,13 +41,13 @@ SteadyLines steady_lines(const Eigen::MatrixXd& outputs, double interval);
 /// A free decay without the drift of its sensor: a mean over two periods is taken off, which leaves
 /// frequencies and damping ratios as they are (signal/sway.hpp).
 struct DriftFree {
-  Record record;           ///< a period shorter at each end
-  double period = 0.0;     ///< [s]
-  double share = 0.0;      ///< largest, of a channel's motion
-  double steepness = 0.0;  ///< of that channel (Drift)
+  Record record;        ///< a period shorter at each end
+  double period = 0.0;  ///< [s]
+  double share = 0.0;   ///< largest, of a channel's motion
 };
 
-/// Absent: no channel drifts by a fiftieth of its motion or more.
+/// Absent: no channel drifts by a fiftieth of its motion or more, or most of that is done within four
+/// periods, as of a hold and its release, or of a hammer's pulse.
 /// @param lowest_hz frequency of the lowest mode
 std::optional<DriftFree> without_drift(const Record& record, double lowest_hz);
 

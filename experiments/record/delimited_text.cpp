@@ -59,7 +59,9 @@ bool is_key_and_value(const std::vector<std::string_view>& fields) {
   std::erase_if(name, [](char c) { return c == ' ' || c == '_' || c == '-' || c == ':' || c == '.'; });
   static const std::set<std::string> names_too{"date",   "datetime", "datum",       "start", "samples",
                                                "points", "created",  "measurement", "test"};
-  return keys.contains(name) && !(names_too.contains(name) && names_columns({fields[1]}));  // "Date,strain"
+  const auto named = recognise_column(std::string(unquoted(fields[1])), "");
+  const bool names = named && named->kind == RecognisedColumn::Kind::signal && named->states_quantity;
+  return keys.contains(name) && !(names_too.contains(name) && names);  // "Date,strain"
 }
 
 std::string_view line_near(std::string_view text, double place) {

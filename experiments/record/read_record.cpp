@@ -304,7 +304,10 @@ Eigen::VectorXd instants(const Stamps& stamps, std::vector<std::string>& remarks
   }
   if (const auto shared = shared_stamps(times, table.columns)) return counted_from(*shared, stamps, remarks);
   auto fault = find_order_fault(times);
-  if (!fault && !(stamps.format->irregular && stamps.show_intervals()))
+  // Times printed to whole intervals show which rows are missing; that some are is stated.
+  const bool show_gaps =
+      stamps.format->malformed == MalformedRows::as_missing && find_missing_rows(times, stamps.precision());
+  if (!fault && !(stamps.format->irregular && (stamps.show_intervals() || show_gaps)))
     fault = find_sampling_fault(times, stamps.precision());
   if (fault) throw InputError(table.place(fault->sample, stamps.column->index), fault->message);
   refuse_bursts(stamps);

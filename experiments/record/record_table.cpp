@@ -27,6 +27,32 @@ constexpr const char* too_coarse =
 
 }  // namespace
 
+std::optional<MissingRows> find_missing_rows(const std::vector<double>& times,
+                                             const PrintedPrecision& precision) {
+  constexpr double tolerated = 0.05, slack = 1 + 1e-6;
+  constexpr std::size_t seldom = 100;  // rows between two lengthened intervals, at least
+  if (times.size() < 3) return std::nullopt;
+  const double usual = usual_step(times);
+  MissingRows found;
+  std::size_t doubtful = 0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double interval = times[i] - times[i - 1], steps = std::round(interval / usual),
+                 rounding = std::max(precision.resolution(times[i]), precision.resolution(times[i - 1]));
+    const double off = std::abs(interval - steps * usual);
+    // What is printed to whole intervals has no rounding left about their multiples.
+    if (steps < 1.0 || off > (tolerated * usual + (rounding < 0.5 * usual ? rounding : 0.0)) * slack)
+      return std::nullopt;
+    if (steps < 2.0) continue;
+    if (interval - usual <= rounding * slack) ++doubtful;  // a rounding can do that, too
+    if (found.places++ == 0 || steps - 1.0 > static_cast<double>(found.longest))
+      found.longest = static_cast<std::size_t>(steps) - 1, found.before = i;
+    found.rows += static_cast<std::size_t>(steps) - 1;
+  }
+  if (found.rows > times.size()) return std::nullopt;  // another record begins
+  if (found.places == doubtful || seldom * doubtful > times.size()) return std::nullopt;
+  return found;
+}
+
 void PrintedPrecision::add(std::string_view token) {
   int decimals = 0, digits = 0, exponent = 0;
   bool point = false;
@@ -87,6 +113,18 @@ std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& time
   const auto [shortest, longest] = range_of_steps(times);
   if (longest - shortest <= tolerated * shortest) return std::nullopt;
   const double usual = usual_step(times);
+  if (const auto missing = find_missing_rows(times, precision)) {
+    const std::size_t i = missing->before;
+    const std::string others =
+        missing->places > 1 ? fmt::format(", {} at {} places in all", missing->rows, missing->places) : "";
+    return SamplingFault{
+        i, fmt::format("time {} after {}: {} row{} missing between them, at the median interval {:.6g}{}; "
+                       "expected all rows, or [record] with stamps = \"as_they_are\" (usual) and malformed = "
+                       "\"missing\", which takes their samples for not read, and missing_input = "
+                       "\"leave_out\" where an input was measured",
+                       times[i], times[i - 1], missing->longest, missing->longest == 1 ? " is" : "s are",
+                       usual, others)};
+  }
   for (std::size_t i = 1; i < times.size(); ++i) {
     const double interval = times[i] - times[i - 1], deviation = std::abs(interval - usual);
     if (deviation <= tolerated * usual) continue;

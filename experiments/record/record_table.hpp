@@ -46,9 +46,20 @@ struct SamplingFault {
   std::string message;  ///< what was found and what was expected
 };
 
+/// Rows that a file lacks: intervals that are whole multiples of the usual one, of which at least one is
+/// longer than any rounding of printed times makes it. Times printed to whole intervals, as 0.01 s at 100 Hz,
+/// lengthen one by their last digit: more than one such in a hundred rows is a rounding.
+struct MissingRows {
+  std::size_t rows = 0, places = 0;     ///< in all
+  std::size_t longest = 0, before = 0;  ///< rows in a row, and the row behind them
+};
+std::optional<MissingRows> find_missing_rows(const std::vector<double>& times,
+                                             const PrintedPrecision& precision);
+
 /// The first time that does not follow its predecessor, or does at an interval more than 5 % from the median
 /// interval that the rounding of printed times does not explain. Rounding coarser than half an interval
-/// explains nothing, as it would hide a missing sample. The filters take one sampling interval.
+/// explains nothing, as it would hide a missing sample. The filters take one sampling interval. Missing rows
+/// are named as such, where most are missing in a row.
 ///
 /// @param times as printed, in the file's unit, in which the message speaks too.
 std::optional<SamplingFault> find_sampling_fault(const std::vector<double>& times,

@@ -98,8 +98,10 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"EmptyField", record, "\n0\\.4,[^\n]*", "\n0.4,",
               "tip_acceleration.csv:102:5: column 2 holds no entry; expected a number"},
         Fault{"MissingSample", record, "\n0\\.4,[^\n]*", "",
-              "tip_acceleration.csv:102:1: time 0.404 after 0.396, an interval of 0.008; expected the median "
-              "interval 0.004 within 5 %"},
+              "tip_acceleration.csv:102:1: time 0.404 after 0.396: 1 row is missing between them, at the "
+              "median interval 0.004; expected all rows, or [record] with stamps = \"as_they_are\" (usual) "
+              "and malformed = \"missing\", which takes their samples for not read, and missing_input = "
+              "\"leave_out\" where an input was measured"},
         Fault{"TimeRunsBack", record, "\n0\\.4,", "\n0.3,",
               "tip_acceleration.csv:102:1: time 0.3 after 0.396; expected increasing times"},
         Fault{

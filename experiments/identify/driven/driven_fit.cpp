@@ -27,13 +27,20 @@ using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::
 std::optional<SectionScatter> section_scatter(const JointModel& model, const filters::Measurements& record,
                                               const filters::Gaussian& prior, const VectorXd& theta,
                                               double lowest_hz, const VectorXd& input_noise) {
-  constexpr double fewest_periods = 20.0;
-  constexpr Index fewest_sections = 6, most_sections = 20;
+  constexpr double short_periods = 8.0;
+  constexpr Index fewest_sections = 6, most_sections = 20, more_than_unknowns = 3;
   auto whole = driven_problem(model, record, prior);
   if (!whole || !(lowest_hz > 0.0)) return {};
   const double periods = lowest_hz * record.interval() * static_cast<double>(record.size());
-  const Index sections = std::min(most_sections, static_cast<Index>(periods / fewest_periods));
-  if (sections < fewest_sections) return {};
+  const auto sections_of = [&](double each) {
+    return std::min(most_sections, static_cast<Index>(periods / each));
+  };
+  Index sections = sections_of(SectionScatter::long_periods), fewest = fewest_sections;
+  if (sections < fewest) {
+    sections = sections_of(short_periods);
+    fewest = std::max(fewest, theta.size() + more_than_unknowns);
+  }
+  if (sections < fewest) return {};
   try {
     if (has_noise(input_noise)) whole->input_noise = input_noise;
     const DrivenFit all = weigh_by_residual(*whole, theta);

@@ -31,10 +31,14 @@ struct SectionScatter {
   Eigen::MatrixXd own_deviation;  ///< of those, by what the record leaves (q x S)
   Eigen::VectorXd size;           ///< root mean square of each section's outputs over the whole record's (S)
   double left_share = 0.0;        ///< of the lines of the whole record, what the estimates leave
+
+  static constexpr double long_periods = 20.0;
+  bool is_long() const { return periods >= long_periods; }
 };
 
-/// Of at least 6 sections of at least 20 periods of the lowest mode. Absent where the record is shorter, or
-/// has no lines (driven_problem()).
+/// Of at least 6 sections of at least 20 periods of the lowest mode; of a record that is too short for these,
+/// of 8 periods or more, at least three more than unknowns. Such a section holds its start, too, and decides
+/// no verdict. Absent where the record is shorter still, or has no lines (driven_problem()).
 /// @param theta of the model's unknowns, in its coordinates (q)
 /// @param prior what is known beforehand of them
 /// @param input_noise standard deviations (m); none above 0: the inputs are exact

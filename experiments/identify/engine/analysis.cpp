@@ -104,6 +104,69 @@ double beam_frequency_hz(const Experiment& experiment) {
 
 enum class Depth { mode, everything };
 
+// A frequency that falls or rises with the amplitude looks like several modes: sidebands stand beside one.
+
+double shift_of(const AmplitudePoint& from, const AmplitudePoint& to) {
+  return (to.frequency_hz - from.frequency_hz) /
+         std::hypot(from.frequency_deviation_hz, to.frequency_deviation_hz);
+}
+
+/// Whether amplitude and frequency go one way all along a decay, as those of modes that beat do not.
+bool go_one_way(const std::vector<AmplitudePoint>& points) {
+  constexpr double against = -3.0;             // standard deviations
+  constexpr std::size_t fewest = 5, next = 2;  // windows overlap by half
+  if (points.size() < fewest) return false;
+  const double way = points.back().frequency_hz > points.front().frequency_hz ? 1.0 : -1.0;
+  for (std::size_t i = next; i < points.size(); ++i)
+    if (!(points[i].amplitude < points[i - next].amplitude) ||
+        way * shift_of(points[i - next], points[i]) < against)
+      return false;
+  return true;
+}
+
+/// Windows of the envelope in place of the sections, which are fitted to a mode without companions. Absent
+/// where the frequency is steady (amplitude_trend()), moves by less than the half-power width, or does not go
+/// one way.
+std::optional<AmplitudeSections> sections_of_envelope(const VectorXd& signal, double interval,
+                                                      const ModalEstimate& mode, double noise) {
+  constexpr double periods = 8.0;              // a chirp within a window makes its deviation larger
+  constexpr double poorly = 0.5, chirp = 3.0;  // relative deviation of a damping ratio: at the end; at all
+  AmplitudeSettings settings;
+  settings.window = periods / mode.frequency_hz;
+  settings.largest_deviation = chirp;
+  std::vector<AmplitudePoint> points;
+  try {
+    points = amplitude_dependence(signal, interval, mode.rate(), {}, settings);
+  } catch (const std::invalid_argument&) {  // too short
+    return {};
+  }
+  while (!points.empty() &&
+         points.back().damping_ratio_deviation > poorly * std::abs(points.back().damping_ratio))
+    points.pop_back();
+  const auto trend = amplitude_trend(points);
+  if (!trend || !trend->frequency || !go_one_way(points)) return {};
+  if (std::abs(trend->first.frequency_hz / trend->last.frequency_hz - 1.0) <
+      2.0 * std::abs(trend->last.damping_ratio))
+    return {};
+  const auto count = static_cast<Index>(points.size());
+  AmplitudeSections found;
+  found.noise = noise;
+  for (SectionTrend* one : {&found.frequency, &found.damping}) {
+    one->probability = one->constant = 0.0;
+    one->values.resize(count);
+    one->weight = VectorXd::Ones(1);
+  }
+  for (Index i = 0; i < count; ++i) {
+    const AmplitudePoint& at = points[static_cast<std::size_t>(i)];
+    found.sections.push_back({at.time - 0.5 * settings.window, at.time + 0.5 * settings.window, at.amplitude,
+                              at.frequency_hz, at.frequency_deviation_hz, at.damping_ratio,
+                              at.damping_ratio_deviation});
+    found.frequency.values[i] = at.frequency_hz, found.damping.values[i] = at.damping_ratio;
+  }
+  for (SectionTrend* one : {&found.frequency, &found.damping}) one->possible = one->values;
+  return found;
+}
+
 // Two modes in the place of one, else phases that wander, whose sidebands may stand as other modes.
 void look_beside_one_mode(const VectorXd& signal, double interval, bool alone, RecordAnalysis& found) {
   ModalEstimate& mode = *found.modal;
@@ -141,11 +204,39 @@ void take_decay(const Experiment& experiment, Depth depth, const ModalAnalysisSe
   look_beside_one_mode(filled, interval, asks_free_oscillator(experiment, found.record), found);
 }
 
+/// One mode whose frequency follows its amplitude, in place of several. @returns whether it is
+bool follow_amplitude(const Experiment& experiment, ModalAnalysisSettings settings, RecordAnalysis& found) {
+  constexpr double near = 0.3;  // of the frequency: sidebands, no other modes
+  const ModalEstimate& mode = *found.modal;
+  if (!found.sections.sections.empty() ||
+      !std::ranges::all_of(mode.companions, [&](const CompanionMode& other) {
+        return std::abs(other.frequency_hz / mode.frequency_hz - 1.0) < near;
+      }))
+    return false;
+  const Record& even = found.even.record;
+  const VectorXd signal = even.samples.row(output_channels(even)[0]).transpose();
+  auto sections = sections_of_envelope(signal, even.interval(), mode, found.near_mode->deviation);
+  if (!sections) return false;
+  RecordAnalysis alone = found;
+  settings.companion_amplitude = std::numeric_limits<double>::infinity();
+  try {
+    take_decay(experiment, Depth::everything, settings, alone);
+  } catch (const std::exception&) {  // no sine is near the motion
+    alone = found;
+    alone.modal->companions.clear();
+  }
+  alone.walk.reset(), alone.pair.reset();
+  alone.sections = std::move(*sections);
+  found = std::move(alone);
+  return true;
+}
+
 void find_decaying_mode(const Experiment& experiment, Depth depth, RecordAnalysis& found) {
   ModalAnalysisSettings settings;
   settings.expected_frequency_hz = found.expected_hz;
   try {
     take_decay(experiment, depth, settings, found);
+    if (depth == Depth::everything && follow_amplitude(experiment, settings, found)) return;
     if (!found.walk || found.modal->companions.empty()) return;
     if (!without_neighbours(*found.modal).companions.empty()) return;
     settings.companion_amplitude = std::numeric_limits<double>::infinity();  // they are sidebands
@@ -298,60 +389,6 @@ RecordAnalysis analyse(const Experiment& experiment, const Record& record) {
 
 RecordAnalysis analyse_mode(const Experiment& experiment, const Record& record) {
   return analyse_to(Depth::mode, experiment, record);
-}
-
-namespace {
-
-DecayObjection jump_objection(const DecayJump& jump, double from) {
-  constexpr double much = 0.05;
-  const MotionJump* const motion = jump.motion();
-  const bool contradicts =
-      !motion || std::abs(motion->amplitude_ratio - 1) > much || std::abs(motion->phase) > much;
-  return {
-      {"jump",
-       fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
-                   "intervals. Expected a --window on one side of it.",
-                   contradicts ? "CONTRADICTED: " : "", jump.sentence(from))},
-      contradicts};
-}
-
-DecayObjection pair_objection(const ClosePair& pair, double frequency_hz) {
-  const bool contradicts = pair.contradicts_one();
-  return {
-      {pair.objection(),
-       (contradicts ? "CONTRADICTED: " : "") + pair.sentence(frequency_hz) +
-           (pair.wins ? " One mode has neither of their damping ratios. Expected a model of both; `beamid "
-                        "modal` lists them."
-                      : " Intervals are those of one mode. A longer record or more channels may decide: "
-                        "`beamid modal`."),
-       pair.over_drift, clearly_two},
-      contradicts};
-}
-
-}  // namespace
-
-std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode,
-                                             bool alone) {
-  std::vector<DecayObjection> objections;
-  if (analysis.jump) objections.push_back(jump_objection(*analysis.jump, analysis.even.record.time[0]));
-  if (const auto& overtone = analysis.overtone; overtone && !analysis.sections.frequency.varies()) {
-    constexpr double twice = 2;
-    const double half = quantile_95 * mode.damping_ratio_deviation,
-                 error = overtone->damping_error() * std::abs(mode.damping_ratio);
-    if (std::abs(error) > half)
-      objections.push_back(
-          {{"overtone",
-            fmt::format("{} The damping ratio is wrong by about {:.2g} % through it, more than its interval. "
-                        "Expected a later --window, or a sensor of larger range.",
-                        overtone->words(), 100 * std::abs(overtone->damping_error())),
-            std::abs(error), half},
-           std::abs(error) > twice * half});
-  }
-  if (analysis.pair && alone && analysis.pair->speaks_against_one())
-    objections.push_back(pair_objection(*analysis.pair, mode.frequency_hz));
-  if (analysis.walk && analysis.walk->is_sure())
-    objections.push_back({{"phase_wander", analysis.walk->sentence()}, false});
-  return objections;
 }
 
 }  // namespace beamid::experiments

@@ -123,7 +123,7 @@ double described_frequency_hz(const Experiment& experiment, const Record& record
 /// The frequency at which a record of this rate shows a mode: below half the rate its own, above it another.
 double shown_at(double frequency_hz, double sampling_rate_hz);
 
-// What in a free decay speaks against any one frequency and damping ratio of it.
+// What in a free decay speaks against any one frequency and damping ratio of it (verdict/free_modes.cpp).
 
 /// What speaks against one frequency and damping ratio of a free decay.
 struct DecayObjection {
@@ -131,6 +131,9 @@ struct DecayObjection {
   bool contradicts = false;  ///< the estimates are not to be relied on
 };
 
+/// - A frequency that follows the amplitude by 0.2 % and five standard deviations (amplitude_trend() of the
+///   sections), and by half of the half-power width. Where it moves by more than that width and the damping
+///   ratio as identified is that of no part of the decay, it contradicts.
 /// - A jump of the motion (decay_jump.hpp) in what was identified: no single decay goes across it. By a
 ///   twentieth of the amplitude, or of a radian, or of its frequency, it contradicts.
 /// - The overtone of a sensor that saturates softly (amplitude_dependence.hpp), where the damping ratio is

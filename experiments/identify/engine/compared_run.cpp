@@ -208,7 +208,8 @@ constexpr double too_much_driven = 10.0, too_much_free = 50.0;  // %
 // how far that moves the estimates.
 bool is_approximate(const ComparedRun& run) {
   constexpr double most_left = 0.3;
-  return run.sections && run.sections->left_share < most_left && run.misfit_percent > too_much_driven;
+  return run.sections && run.sections->is_long() && run.sections->left_share < most_left &&
+         run.misfit_percent > too_much_driven;
 }
 
 // A measured input leaves the model no freedom but its parameters: what the best of them leave is no decay
@@ -312,7 +313,9 @@ bool judge_faults(ComparedRun& run) {
   }
   run.contradict(named,
                  {"description",
-                  "CONTRADICTED: one thing described otherwise explains the record better: " + named + ".",
+                  "CONTRADICTED: one thing described otherwise explains the record better: " + named +
+                      ". What the model lacks can look the same: girders that bend, a base that rocks, "
+                      "springs that are not linear, friction.",
                   statistic, limit});
   return true;
 }

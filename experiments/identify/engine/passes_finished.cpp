@@ -111,6 +111,14 @@ void Passes::look_at_sections() {
   const filters::Gaussian known = known_about_start(started_, setting_, record_.outputs);
   run_.sections = section_scatter(*run_.model, record_, known, run_.unknown_state.mean,
                                   modes->lowest.frequency_hz, run_.settings.input_noise);
+  // Of a short record they say less than its lines do, where those are left white, and nothing where a
+  // scheme's bias is larger than what they scatter.
+  constexpr double white = 1e-3;
+  const bool innovations_are_white = run_.diagnostics && run_.diagnostics->consistency &&
+                                     run_.diagnostics->consistency->whiteness_p_value > white;
+  const bool is_biased = settings_.discretisation.ends_with("_euler");  // of first order
+  if (run_.sections && !run_.sections->is_long() && (innovations_are_white || is_biased))
+    run_.sections.reset();
 }
 
 // Lags that are unknown too leave less of the record to the unknowns.

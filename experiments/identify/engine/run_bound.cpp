@@ -200,7 +200,7 @@ void widen_intervals(const RunContext& context, ComparedRun& run) {
       run.noise_in.empty() && context.analysis.modal ? by_mode(context, run) : by_influence(run);
   if (run.sections) {
     by_sections(run, factors);
-    follow_size(run);
+    if (run.sections->is_long()) follow_size(run);
   }
   for (std::size_t j = 0; j < factors.size(); ++j) widen(run, j, factors[j]);
   hold_sections(context.analysis.sections, run);

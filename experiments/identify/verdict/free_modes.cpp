@@ -21,6 +21,7 @@
 #include "experiments/identify/engine/compared_run.hpp"
 #include "experiments/identify/engine/model_setting.hpp"
 #include "experiments/identify/engine/run_bound.hpp"
+#include "experiments/modal/amplitude_dependence.hpp"
 #include "experiments/modal/study/modal_study.hpp"
 #include "experiments/modal/subspace_realisation.hpp"
 #include "experiments/models/joint_model.hpp"
@@ -257,6 +258,117 @@ void judge_free_modes(ComparedRun& run) {
     run.contradict(reason, objection);
   else
     run.object(objection);
+}
+
+// What in the decay itself speaks against one frequency and damping ratio of it (engine/analysis.hpp).
+
+namespace {
+
+DecayObjection jump_objection(const DecayJump& jump, double from) {
+  constexpr double much = 0.05;
+  const MotionJump* const motion = jump.motion();
+  const bool contradicts =
+      !motion || std::abs(motion->amplitude_ratio - 1) > much || std::abs(motion->phase) > much;
+  return {
+      {"jump",
+       fmt::format("{}{} A decay across it has neither this frequency nor this damping ratio within their "
+                   "intervals. Expected a --window on one side of it.",
+                   contradicts ? "CONTRADICTED: " : "", jump.sentence(from))},
+      contradicts};
+}
+
+DecayObjection pair_objection(const ClosePair& pair, double frequency_hz) {
+  const bool contradicts = pair.contradicts_one();
+  return {
+      {pair.objection(),
+       (contradicts ? "CONTRADICTED: " : "") + pair.sentence(frequency_hz) +
+           (pair.wins ? " One mode has neither of their damping ratios. Expected a model of both; `beamid "
+                        "modal` lists them."
+                      : " Intervals are those of one mode. A longer record or more channels may decide: "
+                        "`beamid modal`."),
+       pair.over_drift, clearly_two},
+      contradicts};
+}
+
+/// Absent where the sections of a decay differ by less than amplitude_trend() requires, or by less than half
+/// of the half-power width. It contradicts where
+/// the frequency moves by more than the half-power width 2 xi f, which a fit of one mode takes for damping,
+/// and the damping ratio as identified is that of no part of the decay.
+std::optional<DecayObjection> amplitude_objection(const RecordAnalysis& analysis, const FoundMode& mode) {
+  constexpr double alike = 1.25, clear = 0.1, surely = 1e-6, least_change = 0.002;
+  constexpr double slight = 0.45;  // half-power widths: intervals hold it, and real beams do as much
+  std::vector<AmplitudePoint> points;
+  for (const DecaySection& one : analysis.sections.sections)
+    points.push_back({0.5 * (one.from + one.to), one.amplitude, one.frequency_hz, one.frequency_deviation_hz,
+                      one.damping_ratio, one.damping_ratio_deviation});
+  auto trend = amplitude_trend(points);
+  const SectionTrend& by_law = analysis.sections.frequency;
+  if (!trend && by_law.varies() && by_law.probability < surely) {  // the last sections may be poor
+    const double first = by_law.values[0], last = by_law.values.tail(1)[0];
+    if (std::abs(last / first - 1.0) > least_change)
+      trend = AmplitudeTrend{points.front(), points.back(), true};
+    if (trend) trend->first.frequency_hz = first, trend->last.frequency_hz = last;
+  }
+  if (!trend || !trend->frequency) return {};
+  const auto is_poor = [](const AmplitudePoint& one) {
+    return !(one.damping_ratio_deviation < clear * std::abs(one.damping_ratio));
+  };
+  if (!std::ranges::all_of(points, is_poor)) std::erase_if(points, is_poor);
+  const auto [least, most] = std::ranges::minmax(points, {}, &AmplitudePoint::damping_ratio);
+  const double middle = 0.5 * (least.damping_ratio + most.damping_ratio),
+               widths = std::abs(trend->last.frequency_hz / trend->first.frequency_hz - 1.0) /
+                        (2.0 * std::max(middle, 1e-9)),
+               ratio = mode.damping_ratio;
+  if (!(widths > slight)) return {};
+  const bool contradicts =
+      widths > 1.0 && !(ratio < alike * most.damping_ratio && alike * ratio > least.damping_ratio);
+  const Channel& channel =
+      analysis.record.channels[static_cast<std::size_t>(output_channels(analysis.record)[0])];
+  return DecayObjection{
+      {"amplitude_dependent",
+       fmt::format(
+           "{}The frequency follows the amplitude: {} while it falls from {:.3g} to {:.3g} {}, {:.2g} times "
+           "the half-power width. {} A second mode that dies out earlier can look the same. Expected a later "
+           "--window, or a model of such a spring: [model] name = \"duffing\"; `beamid backbone` shows how "
+           "it "
+           "depends.",
+           contradicts ? "CONTRADICTED: " : "", trend->changes(), trend->first.amplitude,
+           trend->last.amplitude, si_unit(channel.quantity), widths,
+           contradicts
+               ? fmt::format("A model of one frequency takes that for damping: its ratio, {:.3g} %, is "
+                             "that of no part of the decay, {:.3g} to {:.3g} %.",
+                             100.0 * ratio, 100.0 * least.damping_ratio, 100.0 * most.damping_ratio)
+               : std::string("One frequency and damping ratio do not describe it, and intervals hold "
+                             "those along the decay.")),
+       widths, 1.0},
+      contradicts};
+}
+
+}  // namespace
+
+std::vector<DecayObjection> decay_objections(const RecordAnalysis& analysis, const FoundMode& mode,
+                                             bool alone) {
+  std::vector<DecayObjection> objections;
+  if (auto amplitude = amplitude_objection(analysis, mode)) objections.push_back(std::move(*amplitude));
+  if (analysis.jump) objections.push_back(jump_objection(*analysis.jump, analysis.even.record.time[0]));
+  if (const auto& overtone = analysis.overtone; overtone && !analysis.sections.frequency.varies()) {
+    constexpr double twice = 2;
+    const double half = quantile_95 * mode.damping_ratio_deviation,
+                 error = overtone->damping_error() * std::abs(mode.damping_ratio);
+    if (std::abs(error) > half)
+      objections.push_back(
+          {{"overtone",
+            fmt::format("{} The damping ratio is wrong by about {:.2g} % through it, more than its interval. "
+                        "Expected a later --window, or a sensor of larger range.",
+                        overtone->words(), 100 * std::abs(overtone->damping_error())),
+            std::abs(error), half},
+           std::abs(error) > twice * half});
+  }
+  if (analysis.pair && alone && analysis.pair->speaks_against_one())
+    objections.push_back(pair_objection(*analysis.pair, mode.frequency_hz));
+  if (analysis.walk && analysis.walk->is_sure())
+    objections.push_back({{"phase_wander", analysis.walk->sentence()}, false});
+  return objections;
 }
 
 }  // namespace beamid::experiments

@@ -113,7 +113,8 @@ std::array<Complex, 3> decaying_sums(Complex gamma, double dt, Index samples) {
   const Complex factor = std::exp(gamma * dt);
   std::array<Complex, 3> sum{};
   Complex power = 1.0;
-  for (Index j = 0; j < samples; ++j, power *= factor) {
+  constexpr double nothing = 1e-40;  // squared
+  for (Index j = 0; j < samples && std::norm(power) > nothing; ++j, power *= factor) {
     const double t = dt * static_cast<double>(j);
     sum[0] += power;
     sum[1] += t * power;

@@ -37,7 +37,7 @@ std::vector<RecordLine> lines_of(const Record& record) {
 
 std::optional<double> take_decay(const Record& measured, bool windowed, Record& whole,
                                  std::vector<RecordLine>& lines, RecordModes& found) {
-  constexpr double cycles = 2.0, hold = 0.6;  // four cycles in two resolutions each; of the drift's range
+  constexpr double cycles = 2.0;  // four cycles in two resolutions each
   const auto drift_of = [&](const Record& record) -> std::optional<DriftFree> {
     lines = lines_of(record);
     const auto lowest = std::ranges::find_if(
@@ -51,7 +51,7 @@ std::optional<double> take_decay(const Record& measured, bool windowed, Record& 
   if (!free && part.size() < whole.size()) {  // a drift larger than the motion hides the release
     const std::vector<RecordLine> kept = lines;
     std::optional<DriftFree> of_whole = drift_of(whole);
-    if (of_whole && of_whole->steepness < hold) {
+    if (of_whole) {
       std::vector<std::string> others;
       const double begin = from_release(of_whole->record, measured, others).time[0];
       const Index first = std::lower_bound(whole.time.begin(), whole.time.end(), begin) - whole.time.begin();
@@ -67,7 +67,7 @@ std::optional<double> take_decay(const Record& measured, bool windowed, Record& 
   }
   found.drift = fmt::format(
       "The signal drifts by {:.2g} % of its motion (root mean square): a mean over {:.3g} s was taken off, "
-      "which leaves frequencies and damping ratios as they are and costs {:.3g} s at each end.",
+      "which does not change frequencies and damping ratios and takes {:.3g} s off each end.",
       100.0 * free->share, 2.0 * free->period, free->period);
   found.remarks.push_back(found.drift);
   found.record = std::move(free->record);

@@ -321,7 +321,7 @@ std::string picture_address(std::string_view svg) {
     const auto byte = static_cast<unsigned char>(letter);
     if (letter == ' ' || letter == '\t' || letter == '\n' || letter == '\r') {
       if (!address.ends_with(' ')) address += ' ';
-    } else if (byte < 0x20 || std::string_view("%#<>\"&").find(letter) != std::string_view::npos) {
+    } else if (byte < 0x20 || std::string_view("%#<>\"&:").find(letter) != std::string_view::npos) {
       address += fmt::format("%{:02X}", byte);
     } else {
       address += letter;

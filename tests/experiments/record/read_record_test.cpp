@@ -245,10 +245,15 @@ TEST(ReadRecord, RefusesIrregularTimes) {
       {{"0,1\n0.1,1\n0.1,1\n", "bad.txt:3:1: time 0.1 after 0.1; expected increasing times"},
        {"0,1\n0.1,1\n0.05,1\n", "bad.txt:3:1: time 0.05 after 0.1; expected increasing times"},
        {"0.000,1\n0.100,1\n0.200,1\n0.400,1\n0.500,1\n",
-        "bad.txt:4:1: time 0.4 after 0.2, an interval of 0.2; expected the median interval 0.1 within 5 %"},
+        "bad.txt:4:1: time 0.4 after 0.2: 1 row is missing between them, at the median interval 0.1"
+        "; expected all rows, or [record] with stamps = \"as_they_are\" (usual) and malformed = \"missing\", "
+        "which takes their samples for not read, and missing_input = \"leave_out\" where an input was "
+        "measured"},
        {"# a gap of one sample in rounded times\n0.0006,1\n0.0012,1\n0.0018,1\n0.0030,1\n0.0036,1\n",
-        "bad.txt:5:1: time 0.003 after 0.0018, an interval of 0.0012; expected the median interval 0.0006 "
-        "within 5 %"}});
+        "bad.txt:5:1: time 0.003 after 0.0018: 1 row is missing between them, at the median interval 0.0006"
+        "; expected all rows, or [record] with stamps = \"as_they_are\" (usual) and malformed = \"missing\", "
+        "which takes their samples for not read, and missing_input = \"leave_out\" where an input was "
+        "measured"}});
   RecordFormat rate = two_columns();
   rate.sampling_rate = 10;
   expect_refused(

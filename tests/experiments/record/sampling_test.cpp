@@ -53,6 +53,28 @@ TEST(Sampling, KnowsTheResolutionOfPrintedNumbers) {
   EXPECT_DOUBLE_EQ(scientific.resolution(25.0), 1e-3);
 }
 
+// Rows 700 to 729 and 900 of 3,000 at 100 Hz, printed to 0.01 s: such an interval of 0.31 s is no rounding.
+TEST(Sampling, MissingRowsAreCountedWhereStampsArePrintedToWholeIntervals) {
+  std::vector<std::string> tokens;
+  for (int i = 0; i < 3000; ++i)
+    if (!(i >= 700 && i < 730) && i != 900) tokens.push_back(fmt::format("{:.2f}", 0.01 * i));
+  const auto fault = fault_of(tokens);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->sample, 700u);
+  EXPECT_NE(fault->message.find("time 7.3 after 6.99: 30 rows are missing between them"), std::string::npos)
+      << fault->message;
+  EXPECT_NE(fault->message.find("31 at 2 places in all"), std::string::npos) << fault->message;
+  EXPECT_NE(fault->message.find("malformed = \"missing\""), std::string::npos) << fault->message;
+  EXPECT_NE(fault->message.find("missing_input = \"leave_out\""), std::string::npos) << fault->message;
+}
+
+// 78 Hz, printed to 0.01 s: steps of one and two hundredths.
+TEST(Sampling, StampsThatAreRoundedToTheirIntervalLackNoRows) {
+  const auto fault = fault_of(printed("{:.2f}", 1.0 / 78.0, -1));
+  ASSERT_TRUE(fault);
+  EXPECT_NE(fault->message.find("printed this coarsely"), std::string::npos) << fault->message;
+}
+
 // A clock's seconds without their decimals: 100 samples share each stamp.
 TEST(Sampling, StampsPrintedWithoutTheirDecimalsAreSaidToBe) {
   const auto fault = fault_of([] {

@@ -158,7 +158,7 @@ TEST(TrendWithSize, IsAbsentOfSectionsOfOneSize) {
 }
 
 TEST(SectionScatter, IsAbsentOfShortRecords) {
-  const Started one = started(shaken(2000, 0.05, 0.0), 3000.0);
+  const Started one = started(shaken(900, 0.05, 0.0), 3000.0);
   EXPECT_FALSE(section_scatter(one.model, one.record, one.prior, one.prior.mean, 3.7));
 }
 

@@ -156,7 +156,7 @@ TEST(TextOfSeismologicalServices, HoldsSeveralTraces) {
   const TemporaryFile file("traces.txt", text);
   const RecordTable table = read_table(file.path(), {});
   EXPECT_THAT(table.names, testing::ElementsAre("XX_ABC__HHZ_D", "acceleration XX_ABC__HNZ_D"));
-  EXPECT_THAT(table.units, testing::ElementsAre("m/s", ""));
+  EXPECT_THAT(table.units, testing::ElementsAre("m/s", "counts"));
   ASSERT_EQ(table.rows(), 40u);
   EXPECT_NEAR(table.columns[0][1], std::cos(0.3), 1e-6);
   EXPECT_TRUE(std::isnan(table.columns[1][0]));
