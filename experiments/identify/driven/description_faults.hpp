@@ -43,8 +43,8 @@ struct DescriptionTests {
 /// is left. Inputs that are taken for band-limited are tried with lines between their samples. A damping
 /// ratio that is asked of all modes together is held against ratios of their own of the modes in the band,
 /// all at once. Of a chain, dashpots in the storeys stand against ratios of modes, and the other way: neither
-/// holds the other, and the likelihood decides. Beside noise of the inputs r and its derivatives are whitened,
-/// and lags of the channels and of the inputs are tried.
+/// holds the other, and the likelihood decides. Beside noise of the inputs r and its derivatives are
+/// whitened, and lags of the channels and of the inputs are tried.
 /// @param theta the unknowns that were found, in the model's coordinates (q)
 /// @param input_noise standard deviations (m); none above 0: the inputs are exact
 /// @returns empty where the record is none of a small linear model with measured inputs.
