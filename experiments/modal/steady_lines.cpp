@@ -124,14 +124,15 @@ SteadyLines steady_lines(const MatrixXd& outputs, double interval) {
 std::optional<DriftFree> without_drift(const Record& record, double lowest_hz) {
   constexpr double least = 0.02, steep = 0.8;
   const double interval = record.interval();
-  DriftFree found{record, 1.0 / lowest_hz};
-  double steepness = 0.0;
+  const double period = 1.0 / lowest_hz;
+  Drift largest;
   for (const auto& row : record.samples.rowwise()) {
-    const Drift drift = drift_beneath(row.transpose(), interval, found.period);
-    if (drift.share > found.share) found.share = drift.share, steepness = drift.steepness;
+    const Drift drift = drift_beneath(row.transpose(), interval, period);
+    if (drift.share > largest.share) largest = drift;
   }
-  if (found.share < least || steepness > steep) return {};
-  const auto edge = static_cast<Index>(std::lround(found.period / interval));
+  if (largest.share < least || largest.steepness > steep) return {};
+  DriftFree found{record, period, largest.share};
+  const auto edge = static_cast<Index>(std::lround(period / interval));
   const Index left = record.size() - 2 * edge;
   found.record.time = record.time.segment(edge, left);
   found.record.samples.resize(record.samples.rows(), left);
@@ -139,7 +140,7 @@ std::optional<DriftFree> without_drift(const Record& record, double lowest_hz) {
   signal.interval = interval;
   for (Index i = 0; i < record.samples.rows(); ++i) {
     signal.samples = record.samples.row(i).transpose();
-    found.record.samples.row(i) = without_sway(signal, found.period).samples.transpose();
+    found.record.samples.row(i) = without_sway(signal, period).samples.transpose();
   }
   return found;
 }

@@ -38,8 +38,8 @@ struct SteadyLines {
 /// @param outputs (p x N), channels of about the same size
 SteadyLines steady_lines(const Eigen::MatrixXd& outputs, double interval);
 
-/// A free decay without the drift of its sensor: a mean over two periods is taken off, which leaves
-/// frequencies and damping ratios as they are (signal/sway.hpp).
+/// A free decay without the drift of its sensor: a mean over two periods is taken off, which does
+/// not change frequencies and damping ratios (signal/sway.hpp).
 struct DriftFree {
   Record record;        ///< a period shorter at each end
   double period = 0.0;  ///< [s]

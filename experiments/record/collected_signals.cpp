@@ -115,6 +115,17 @@ void CollectedSignals::add_matrix(const std::function<std::string(std::size_t, b
   }
 }
 
+void CollectedSignals::add_variable(const std::string& name, std::vector<double> values, std::size_t rows,
+                                    std::size_t columns, int digits) {
+  const auto name_of = [&](std::size_t k, bool is_row) {
+    return is_row ? fmt::format("{}({},:)", name, k) : fmt::format("{}(:,{})", name, k);
+  };
+  if (rows == 1 || columns == 1)
+    add(name, "", std::move(values), digits);
+  else
+    add_matrix(name_of, "", values, rows, columns, digits);
+}
+
 bool CollectedSignals::set(const std::string& name, double value) {
   const std::string last = last_part(name);
   const SamplingName what = sampling_name(last);
@@ -200,7 +211,6 @@ std::string CollectedSignals::unit_for(const Signal& signal) const {
   const std::size_t bracket = last.find_first_of("([{");
   const std::string own = folded(last.substr(0, bracket));
   if (own == "gs") return "g";  // of the bearings of MFPT
-  static const std::regex number(R"([\[(](?:[0-9]+)?[,:]*([0-9]+)?[,:]*[\])]$)");
   const bool time = time_name(signal.name).time;
   std::string unit;
   std::size_t depth = 0;
@@ -276,15 +286,21 @@ void CollectedSignals::find_time(RecordTable& table, const RecordFormat& format)
                     stated->name, stated->interval, *at, mean));
 }
 
-std::size_t CollectedSignals::common_length() const {
+std::size_t length_of_most_numbers(const std::vector<std::size_t>& lengths) {
   std::map<std::size_t, std::size_t> numbers;  // of each length
-  for (const Signal& signal : signals_) numbers[signal.values.size()] += signal.values.size();
-  if (numbers.empty())
+  for (const std::size_t length : lengths) numbers[length] += length;
+  return numbers.empty()
+             ? 0
+             : std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first;
+}
+
+std::size_t CollectedSignals::common_length() const {
+  if (signals_.empty())
     throw InputError({file_},
                      "no signal of at least two numbers; expected vectors or matrices of real numbers");
-  return std::max_element(numbers.begin(), numbers.end(),
-                          [](const auto& a, const auto& b) { return a.second < b.second; })
-      ->first;
+  std::vector<std::size_t> lengths;
+  for (const Signal& signal : signals_) lengths.push_back(signal.values.size());
+  return length_of_most_numbers(lengths);
 }
 
 RecordTable CollectedSignals::table(const RecordFormat& format) const {

@@ -37,22 +37,19 @@ bool is_row(const std::vector<std::string_view>& fields, bool with_gaps) {
 
 bool is_key_and_value(const std::vector<std::string_view>& fields) {
   static const std::set<std::string> keys{
-      "device",        "units",          "unit",           "range",
-      "gain",          "serialnumber",   "serial",         "sn",
-      "date",          "start",          "starttime",      "startdate",
-      "end",           "endtime",        "model",          "sensor",
-      "operator",      "channels",       "samples",        "version",
-      "firmware",      "file",           "filename",       "project",
-      "comment",       "comments",       "notes",          "note",
-      "test",          "testname",       "location",       "sensitivity",
-      "scale",         "mode",           "name",           "title",
-      "station",       "instrument",     "duration",       "numberofsamples",
-      "samplecount",   "points",         "deviceid",       "measurement",
-      "datetime",      "created",        "author",         "customer",
-      "messbereich",   "einheit",        "datum",          "name",
-      "modell",        "sensortype",     "type",           "bandwidth",
-      "resolution",    "filter",         "fullscale",      "recordlength",
-      "verticalscale", "verticaloffset", "horizontalscale"};
+      "device",         "units",          "unit",       "range",        "gain",
+      "serialnumber",   "serial",         "sn",         "date",         "start",
+      "starttime",      "startdate",      "end",        "endtime",      "model",
+      "sensor",         "operator",       "channels",   "samples",      "version",
+      "firmware",       "file",           "filename",   "project",      "comment",
+      "comments",       "notes",          "note",       "test",         "testname",
+      "location",       "sensitivity",    "scale",      "mode",         "name",
+      "title",          "station",        "instrument", "duration",     "numberofsamples",
+      "samplecount",    "points",         "deviceid",   "measurement",  "datetime",
+      "created",        "author",         "customer",   "messbereich",  "einheit",
+      "datum",          "modell",         "sensortype", "type",         "bandwidth",
+      "resolution",     "filter",         "fullscale",  "recordlength", "verticalscale",
+      "verticaloffset", "horizontalscale"};
   if (fields.size() != 2 || is_reading(fields[0]) || fields[0].empty()) return false;
   std::string name = folded(unquoted(fields[0]).substr(0, unquoted(fields[0]).find_first_of("[(")));
   if (sampling_name(name) != SamplingName::none && is_reading(fields[1])) return true;

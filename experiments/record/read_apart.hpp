@@ -53,6 +53,11 @@ class CollectedSignals {
                   const std::string& unit, const std::vector<double>& values, std::size_t rows,
                   std::size_t columns, int digits);
 
+  /// A variable of MATLAB or Octave, stored column by column: a vector by its name, of a matrix its columns
+  /// "a(:,2)" or rows "a(2,:)".
+  void add_variable(const std::string& name, std::vector<double> values, std::size_t rows,
+                    std::size_t columns, int digits);
+
   /// A single number: an interval where it is called dt, Ts or sampling_interval_s, a rate where fs, Fs or
   /// sampling_rate_hz; else of no use. A name with a path counts by its last part.
   /// @returns whether it is one of them.
@@ -94,6 +99,9 @@ class CollectedSignals {
   std::vector<Signal> signals_;
   std::vector<Statement> statements_;
 };
+
+/// Of signals of several lengths the length that most numbers have; 0 without any.
+std::size_t length_of_most_numbers(const std::vector<std::size_t>& lengths);
 
 /// What reading a file may take.
 struct ReadingLimits {

@@ -26,10 +26,10 @@ struct Drift {
   double steepness = 0.0;  ///< its largest change within four periods, of all its range
 };
 
-/// What the window of sway() leaves when it passes twice over the signal: of an oscillation of that period
-/// next to nothing, of a drift nearly all. A share of 0 where it turns more than three times, as a slow mode
-/// does, or where the signal is shorter than ten periods or has fewer than 4 samples in one. Instants half a
-/// period apart are looked at.
+/// What remains of the signal when the window of sway() passes over it twice: of an oscillation of that
+/// period next to nothing, of a drift nearly all. A share of 0 where it turns more than three times, as a
+/// slow mode does, or where the signal is shorter than ten periods or has fewer than 4 samples in one.
+/// Instants half a period apart are looked at.
 Drift drift_beneath(const Eigen::VectorXd& signal, double interval, double period);
 
 // How large a vibration of one frequency is along a signal, and the offset that it rides on.

@@ -34,6 +34,7 @@
 #include "experiments/models/joint_model.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/signal/spectrum.hpp"
+#include "experiments/signal/toolbox.hpp"
 #include "experiments/text/choice.hpp"
 #include "reduction/reduction.hpp"
 
@@ -190,11 +191,10 @@ std::optional<OrderModes> modes_in_record(const RunContext& context, const Compa
   if (static_cast<double>(samples * count * count) > most_products) return {};
   for (Index i = 0; i < outputs.rows(); ++i) {
     outputs.row(i).array() -= outputs.row(i).mean();
-    VectorXd squares = amplitude_spectrum(outputs.row(i).transpose(), dt).amplitude.cwiseAbs2();
-    const auto middle = squares.begin() + squares.size() / 2;
-    std::nth_element(squares.begin(), middle, squares.end());
+    const VectorXd squares = amplitude_spectrum(outputs.row(i).transpose(), dt).amplitude.cwiseAbs2();
     // Under Hann's window white noise has the mean square 6 s^2 / N of a line, ln 2 of it the median.
-    const double floor = std::sqrt(*middle * static_cast<double>(samples) / (6.0 * std::numbers::ln2)),
+    const double floor =
+                     std::sqrt(median(squares) * static_cast<double>(samples) / (6.0 * std::numbers::ln2)),
                  noise = std::max(std::min(floor, run.noise[i]), 1e-9 * run.noise[i]);
     if (!(noise > 0.0)) return {};
     outputs.row(i) /= noise;

@@ -347,8 +347,7 @@ RecordModes find_modes(const std::string& name, const Record& record, bool windo
   if (found.free_decay)
     drift_period = take_decay(record, windowed, whole, lines, found);
   else
-    found.record = whole;
-  check_intervals(found.record);
+    check_intervals(found.record = whole);
   const double interval = found.record.interval();
   const VectorXd scales = scales_of(found.record);
   found.band_hz = settings.band_hz ? *settings.band_hz : decay_band(found.record.samples, interval, lines);

@@ -214,14 +214,8 @@ class MatReader final : public RecordReader {
     const int digits = variable.class_type == MAT_C_SINGLE ? 7 : 15;
     if (count == 1)
       signals.set(name, values[0]);
-    else if (rows == 1 || columns == 1)
-      signals.add(name, "", std::move(values), digits);
     else
-      signals.add_matrix(
-          [&](std::size_t k, bool is_row) {
-            return is_row ? fmt::format("{}({},:)", name, k) : fmt::format("{}(:,{})", name, k);
-          },
-          "", values, rows, columns, digits);
+      signals.add_variable(name, std::move(values), rows, columns, digits);
   }
 };
 

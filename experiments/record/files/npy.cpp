@@ -2,13 +2,15 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <map>
+#include <functional>
 #include <regex>
 
 #include "experiments/record/delimited_text.hpp"
+#include "experiments/record/read_apart.hpp"
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/toml_table.hpp"
@@ -201,11 +203,10 @@ std::string inflated(std::string_view compressed, std::size_t whole) {
 
 /// Arrays of the length that most numbers have; the others are named in a remark.
 void keep_one_length(RecordTable& table) {
-  std::map<std::size_t, std::size_t> numbers;
-  for (const std::vector<double>& column : table.columns) numbers[column.size()] += column.size();
-  if (numbers.size() < 2) return;
-  const std::size_t length =
-      std::ranges::max_element(numbers, {}, [](const auto& one) { return one.second; })->first;
+  std::vector<std::size_t> lengths;
+  for (const std::vector<double>& column : table.columns) lengths.push_back(column.size());
+  if (std::ranges::adjacent_find(lengths, std::not_equal_to()) == lengths.end()) return;
+  const std::size_t length = length_of_most_numbers(lengths);
   std::string others;
   for (std::size_t k = table.columns.size(); k-- > 0;) {
     if (table.columns[k].size() == length) continue;

@@ -129,14 +129,7 @@ class OctaveVariables {
       for (std::size_t column = 0; column < columns_; ++column)
         values[row + column * rows_] = by_rows ? read[row * columns_ + column] : read[row + column * rows_];
     constexpr int digits = 15;
-    if (rows_ == 1 || columns_ == 1)
-      signals_.add(name_, "", std::move(values), digits);
-    else
-      signals_.add_matrix(
-          [&](std::size_t k, bool is_row) {
-            return is_row ? fmt::format("{}({},:)", name_, k) : fmt::format("{}(:,{})", name_, k);
-          },
-          "", values, rows_, columns_, digits);
+    signals_.add_variable(name_, std::move(values), rows_, columns_, digits);
   }
 
   void read_range() {

@@ -70,7 +70,7 @@ LowestComac lowest_comac(const VectorXd& comac) {
 
 namespace {
 
-// The study's 1 kHz has 241 samples in a period of S(0.65). A rate that tells nothing of the first mode, or
+// The study's 1 kHz has 241 samples in a period of S(0.65). A rate that does not show the first mode, or
 // makes its ten periods a million samples long, gives way to one that suits it as well.
 double sampling_rate(double wanted_hz, double first_hz, std::vector<std::string>& notes) {
   constexpr double fewest = 20.0, most = 20000.0, as_in_the_study = 250.0;  // samples a period

@@ -35,7 +35,7 @@ TEST(Sway, IsLeftByTheWindowsTransform) {
 }
 
 // Oracle: the motion itself, with and without its mean.
-TEST(Sway, LeavesOfADecayWhatTheResponseStates) {
+TEST(Sway, ChangesADecayByItsResponse) {
   const std::complex<double> rate(-1.3, tau * 4.1);
   DecimatedSignal decay = sine(1);
   for (Eigen::Index k = 0; k < decay.samples.size(); ++k)

@@ -119,8 +119,8 @@ TEST(DescriptionFaults, AReversedSignAndAUnitAreNamed) {
   }
 }
 
-// The cause that it is leaves noise; what looks like it is named beside it all the same.
-TEST(DescriptionFaults, TheOnlyCauseIsNotDoubted) {
+// Beside the true cause the residual is noise; what looks like it is named all the same.
+TEST(DescriptionFaults, TheOnlyCauseHasNoOtherBesideIt) {
   const ComparedRun run = identified(shaken(1), 1.0, 1.15);
   EXPECT_EQ(run.description.faults.front().sentence.find("another cause"), std::string::npos);
   EXPECT_THAT(texts(run.objections), testing::Contains(HasSubstr("What the model lacks can look the same")));
