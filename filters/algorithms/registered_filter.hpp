@@ -1,4 +1,4 @@
-// An algorithm of sizes known at run time as a filter of the registry, and the model that it sees.
+// An algorithm as a filter of the registry, and the model that it sees.
 #pragma once
 
 #include <algorithm>
@@ -40,6 +40,28 @@ class Observed {
   void output(const Eigen::VectorXd& z, Eigen::VectorXd& y) { model_.output(z, *input_, y); }
   void output_jacobian(const Eigen::VectorXd& z, Eigen::MatrixXd& jacobian) {
     model_.output_jacobian(z, *input_, jacobian);
+  }
+
+  // The same for sizes that the compiler knows, which the model does not: a few numbers are copied.
+  template <int N>
+  void linearised_transition(const Vector<double, N>& z, Vector<double, N>& next,
+                             Matrix<double, N>& jacobian) {
+    point_ = z;
+    model_.linearised_transition(point_, *input_, next_, tangent_);
+    next = next_;
+    jacobian = tangent_;
+  }
+  template <int N, int P>
+  void output(const Vector<double, N>& z, Vector<double, P>& y) {
+    point_ = z;
+    model_.output(point_, *input_, seen_);
+    y = seen_;
+  }
+  template <int N, int P>
+  void output_jacobian(const Vector<double, N>& z, Matrix<double, P, N>& jacobian) {
+    point_ = z;
+    model_.output_jacobian(point_, *input_, sensor_);
+    jacobian = sensor_;
   }
 
   void transitions(const Eigen::MatrixXd& points, Eigen::MatrixXd& moved) {
@@ -88,11 +110,11 @@ class Observed {
   ObservedModel& model_;
   const Eigen::VectorXd* input_ = nullptr;
   Eigen::VectorXd point_, next_, seen_;
+  Eigen::MatrixXd tangent_, sensor_;
   Eigen::MatrixXd process_noise_root_, output_noise_, output_noise_root_;
   int process_noise_changes_ = -1;
 };
 
-using DynamicExtendedKalman = ExtendedKalman<double, Eigen::Dynamic, Eigen::Dynamic>;
 using DynamicUnscentedKalman = UnscentedKalman<double, Eigen::Dynamic, Eigen::Dynamic>;
 using DynamicSquareRootKalman = SquareRootKalman<double, Eigen::Dynamic, Eigen::Dynamic>;
 
@@ -160,12 +182,17 @@ class RegisteredFilter final : public Filter {
     array.topRows(r) = estimate.factor.transpose();
     triangularise(array, algorithm_.root);
   }
+  /// @throws FilterFailure
   void check() const {
+    bool sound = algorithm_.mean.allFinite();
     if constexpr (carries_root) {
-      if (!algorithm_.mean.allFinite() || !algorithm_.root.allFinite()) check_finite(estimate());
+      sound = sound && algorithm_.root.allFinite();
     } else {
-      check_finite(algorithm_.mean, algorithm_.covariance);
+      const auto variances = algorithm_.covariance.diagonal().array();
+      sound = sound && (variances >= 0.0).all() && variances.allFinite();
     }
+    if (!sound) [[unlikely]]
+      check_finite(estimate());  // which forgives what rounding leaves below zero
   }
 
   Observed at_step_;

@@ -4,16 +4,21 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include "experiments/signal/missing_samples.hpp"
+#include "filters/algorithms/products.hpp"
 #include "filters/batch_estimator.hpp"
 #include "filters/diagnostics.hpp"
 #include "filters/fisher_information.hpp"
+#include "filters/linear_gaussian.hpp"
 #include "filters/output_error.hpp"
+#include "filters/sample_clock.hpp"
 #include "filters/sample_walk.hpp"
 
 namespace beamid::experiments {
@@ -53,40 +58,122 @@ void take_misfit(const filters::Measurements& record, Reproduction& motion) {
   motion.misfit_percent = per_channel * std::sqrt(coloured);
 }
 
+namespace {
+
+// Whether every stamp is one regular interval behind the one before.
+bool has_even_stamps(const filters::Measurements& record, double interval) {
+  filters::SampleClock clock(interval, record.time_resolution);
+  clock.start(record.time[0]);
+  for (Index k = 1; k < record.time.size(); ++k)
+    if (clock.advance(record.time[k]) != interval) return false;
+  return true;
+}
+
+// Outputs of a motion whose parameters stay, and how they follow from its start, sample by sample.
+class LinearWalk {
+ public:
+  // @param state parameters in their places (n); everything else starts at zero
+  LinearWalk(filters::DiscreteModel& model, const VectorXd& state, const StartDirections& directions,
+             const filters::Measurements& record)
+      : model_(model), record_(record), start_(state), directions_(directions.motion) {
+    std::vector<Index> held, moving;
+    for (Index i = 0; i < state.size(); ++i) {
+      const bool is_unknown = !directions.unknowns.row(i).isZero(0.0);
+      if (!is_unknown) start_[i] = 0.0;
+      (is_unknown && directions_.row(i).isZero(0.0) ? held : moving).push_back(i);
+    }
+    constexpr std::size_t small = 16;  // up to here dense products are faster than the model's own steps
+    if (moving.size() > small || !has_even_stamps(record, model.interval())) return;
+    const MatrixXd none = MatrixXd::Zero(state.size(), state.size());
+    constant_ = filters::linear_gaussian(model, held, start_(held), {start_, none, {}}, record.inputs.rows());
+    moving_ = std::move(moving);
+  }
+
+  const VectorXd& start() const { return start_; }
+
+  // Calls visit(k, columns), columns = [y_k, dy_k / d start along each direction]^T ((1 + d) x p).
+  template <class Visit>
+  void with_directions(const Visit& visit) const {
+    if (constant_) return by_constant_matrices(start_, directions_, visit);
+    MatrixXd moved = directions_, sensor, columns(1 + moved.cols(), record_.outputs.rows());
+    VectorXd output;
+    filters::walk_samples(model_, record_, record_.time.size(), start_, moved,
+                          [&](Index k, const VectorXd& x, const VectorXd& input) {
+                            model_.output(x, input, output);
+                            model_.output_jacobian(x, input, sensor);
+                            columns.row(0) = output.transpose();
+                            columns.bottomRows(moved.cols()).noalias() = (sensor * moved).transpose();
+                            visit(k, columns);
+                          });
+  }
+
+  // Outputs from another start (p x N).
+  MatrixXd outputs(const VectorXd& start) const {
+    MatrixXd found(record_.outputs.rows(), record_.time.size()), none;
+    VectorXd output;
+    if (constant_)
+      by_constant_matrices(start, MatrixXd(start.size(), 0), [&](Index k, const MatrixXd& columns) {
+        found.col(k) = columns.row(0).transpose();
+      });
+    else
+      filters::walk_samples(model_, record_, record_.time.size(), start, none,
+                            [&](Index k, const VectorXd& x, const VectorXd& input) {
+                              model_.output(x, input, output);
+                              found.col(k) = output;
+                            });
+    return found;
+  }
+
+ private:
+  // W <- W A^T + [G u, 0]^T, W = [x D]^T of the entries that move: long columns make fast products.
+  template <class Visit>
+  void by_constant_matrices(const VectorXd& start, const MatrixXd& directions, const Visit& visit) const {
+    const filters::LinearGaussian& m = *constant_;
+    const bool forced = record_.inputs.size() > 0;
+    MatrixXd moved(1 + directions.cols(), m.a.rows()), next, columns;
+    moved << start(moving_).transpose(), directions(moving_, Eigen::all).transpose();
+    for (Index k = 0; k < record_.time.size(); ++k) {
+      filters::algorithms::multiply_transposed(moved, m.h, columns);
+      if (forced) columns.row(0) += (m.d * record_.inputs.col(k)).transpose();
+      visit(k, columns);
+      filters::algorithms::multiply_transposed(moved, m.a, next);
+      if (forced) next.row(0) += (m.g * record_.inputs.col(k)).transpose();
+      moved.swap(next);
+    }
+  }
+
+  filters::DiscreteModel& model_;
+  const filters::Measurements& record_;
+  VectorXd start_;
+  MatrixXd directions_;
+  std::vector<Index> moving_;
+  std::optional<filters::LinearGaussian> constant_;  // of a small model on even stamps
+};
+
+}  // namespace
+
 Reproduction reproduce(filters::DiscreteModel& model, const VectorXd& state,
                        const StartDirections& directions, const filters::Measurements& record) {
-  const Index samples = record.time.size(), p = record.outputs.rows(), k = directions.motion.cols();
-  const Eigen::LLT<MatrixXd> noise(model.output_noise());
-  // Everything but the parameters starts at zero and is found.
-  VectorXd start = state;
-  for (Index i = 0; i < start.size(); ++i)
-    if (directions.unknowns.row(i).isZero(0.0)) start[i] = 0.0;
-
-  MatrixXd read(p * samples, k), sensor, moved = directions.motion;
-  MatrixXd forced(p, samples), rows(p, k + 1);
-  VectorXd output(p);
-  filters::InformationFactor equations(k + 1);
-  filters::walk_samples(model, record, samples, start, moved,
-                        [&](Index step, const auto& x, const auto& input) {
-                          model.output(x, input, output);
-                          model.output_jacobian(x, input, sensor);
-                          forced.col(step) = output;
-                          read.middleRows(step * p, p).noalias() = sensor * moved;
-                          if (!read.middleRows(step * p, p).allFinite() || !output.allFinite())
-                            throw std::runtime_error("the reproduced motion grows beyond all bounds at " +
-                                                     std::to_string(record.time[step]) + " s");
-                          rows << read.middleRows(step * p, p), record.outputs.col(step) - output;
-                          for (Index i = 0; i < p; ++i)
-                            if (std::isnan(record.outputs(i, step)))
-                              rows.row(i).setZero();  // channels' noises are independent
-                          noise.matrixL().solveInPlace(rows);
-                          equations.add(rows);
-                        });
-  const VectorXd found = solution(equations);
+  const LinearWalk walk(model, state, directions, record);
+  const Index p = record.outputs.rows(), d = directions.motion.cols();
+  const VectorXd weight = model.output_noise().diagonal().cwiseSqrt().cwiseInverse();
+  MatrixXd whitened(p, d + 1);
+  filters::InformationFactor equations(d + 1);
+  walk.with_directions([&](Index k, const MatrixXd& columns) {
+    if (!columns.allFinite())
+      throw std::runtime_error("the reproduced motion grows beyond all bounds at " +
+                               std::to_string(record.time[k]) + " s");
+    for (Index i = 0; i < p; ++i) {
+      const double read = record.outputs(i, k), weighs = std::isnan(read) ? 0.0 : weight[i];
+      for (Index j = 0; j < d; ++j) whitened(i, j) = weighs * columns(1 + j, i);
+      whitened(i, d) = weighs > 0.0 ? weighs * (read - columns(0, i)) : 0.0;
+    }
+    equations.add(whitened);
+  });
 
   Reproduction result;
-  result.initial_state = start + directions.motion * found;
-  result.outputs = forced + (read * found).reshaped(p, samples);
+  result.initial_state = walk.start() + directions.motion * solution(equations);
+  result.outputs = walk.outputs(result.initial_state);
   take_misfit(record, result);
   return result;
 }
