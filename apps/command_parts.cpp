@@ -199,6 +199,8 @@ int deliver(const Values& values, const std::function<experiments::Results()>& f
   const bool writes = values.has("out"), quiet = values.has("quiet");
   if (writes) directory.emplace(values.text("out"), values.has("force"));
 
+  std::optional<experiments::TerminalOnly> shown;
+  if (!writes && !values.receiver() && !values.has("json")) shown.emplace();
   experiments::Results results = find();
   results.command_line = values.command_line();
   results.experiment_file = experiment_text(values);

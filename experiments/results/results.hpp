@@ -56,6 +56,21 @@ struct Array {
   Eigen::MatrixXd values;  ///< (p x N)
 };
 
+/// While one lives, results are for a terminal alone: no figures, no arrays. Of a million samples these take
+/// as long as a pass of the filter, and more memory than all else.
+class TerminalOnly {
+ public:
+  TerminalOnly() { ++living_; }
+  ~TerminalOnly() { --living_; }
+  TerminalOnly(const TerminalOnly&) = delete;
+  TerminalOnly& operator=(const TerminalOnly&) = delete;
+
+  static bool holds() { return living_ > 0; }
+
+ private:
+  static inline thread_local int living_ = 0;
+};
+
 /// All that a command found, for the terminal, the page and the files.
 struct Results {
   std::string command;                ///< "paper", "identify"
@@ -90,6 +105,12 @@ struct Results {
   /// Whether a message is a failure: exit code 3.
   bool has_failed() const;
   void table(Table table) { report.emplace_back(std::move(table)); }
+  /// Figures that are made only where something will show them (TerminalOnly).
+  template <class MakeFigures>
+  void draw(const MakeFigures& make) {
+    if (TerminalOnly::holds()) return;
+    for (Figure& figure : make()) figures.push_back(std::move(figure));
+  }
 };
 
 /// The contents of results.json: schema_version, program, version, command, seed, configuration, then the

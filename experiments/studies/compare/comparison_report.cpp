@@ -434,8 +434,8 @@ Results report(const Experiment& experiment, const Comparison& comparison) {
     add_orders({experiment, comparison.compared, comparison.analysis}, *run, results);
   for (const std::string& paragraph : words(comparison)) results.paragraph(paragraph);
   results.notes(comparison.compared.notes);
-  results.figures = figures(comparison);
-  add_arrays(comparison, results);
+  results.draw([&] { return figures(comparison); });
+  if (!TerminalOnly::holds()) add_arrays(comparison, results);
   for (const ComparedRun& run : comparison.runs) {
     const std::string name = fmt::format("{} {} {}", run.reduction, run.filter, run.discretisation);
     results.timing.emplace_back(name + " filter", run.seconds);

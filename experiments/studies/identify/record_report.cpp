@@ -337,9 +337,10 @@ Results report(const Experiment& experiment, const Record& record, const std::st
     results.paragraph("Stiffness, damping and mass are those of the motion at the first channel. Channels: " +
                       channels_text(placed) + ".");
   if (found.identification.run.failure) return results;
-  results.arrays = {{"", "innovations", found.identification.run.innovations},
-                    {"", "reproduced", found.reproduced},
-                    {"", "time_s", record.time.transpose()}};
+  if (!TerminalOnly::holds())
+    results.arrays = {{"", "innovations", found.identification.run.innovations},
+                      {"", "reproduced", found.reproduced},
+                      {"", "time_s", record.time.transpose()}};
   results.table(parameter_table(experiment, found));
   if (found.batch) results.paragraph(batch_text(found));
   results.notes(found.remarks);
@@ -360,11 +361,10 @@ Results report(const Experiment& experiment, const Record& record, const std::st
         found.beam_frequency_hz,
         difference_words(percent(found.identification.found.frequency_hz(), found.beam_frequency_hz))));
   if (const std::string text = companion_text(found); !text.empty()) results.paragraph(text);
-  results.figures = figures(record, found);
+  results.draw([&] { return figures(record, found); });
   std::vector<std::string> titles;
   for (const Channel& channel : record.channels) titles.push_back(channel_title(channel));
-  if (found.diagnostics)
-    for (Figure& figure : figures(*found.diagnostics, titles)) results.figures.push_back(std::move(figure));
+  if (found.diagnostics) results.draw([&] { return figures(*found.diagnostics, titles); });
   if (!found.smoothed.empty()) {
     const SmoothedRecord smoothed{record.time, found.model, found.identification.run.filtered,
                                   found.smoothed};

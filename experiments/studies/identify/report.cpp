@@ -254,7 +254,7 @@ Results identification_report(const Experiment& experiment, const Comparison& fo
   if (run.batch) results.table(batch_table(run));
   if (run.diagnostics) {
     results.paragraph(words(*run.diagnostics, outputs));
-    for (Figure& figure : figures(*run.diagnostics, outputs)) results.figures.push_back(std::move(figure));
+    results.draw([&] { return figures(*run.diagnostics, outputs); });
   }
   if (run.smoothed.empty()) return results;
   const SmoothedRecord smoothed{record.time, *run.model, run.run.filtered, run.smoothed};

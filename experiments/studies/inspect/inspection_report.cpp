@@ -98,7 +98,7 @@ Results report(const Inspection& found) {
   const bool open = lines.find("...") != std::string::npos;
   results.paragraph(fmt::format("Table for an experiment file{}:\n\n", open ? "; replace each \"...\"" : "") +
                     lines);
-  results.figures = inspection_figures(found);
+  results.draw([&] { return inspection_figures(found); });
   return results;
 }
 

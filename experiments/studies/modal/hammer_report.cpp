@@ -233,7 +233,7 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study) {
   else
     results.table(mode_table(study));
   for (const Objection& one : study.objections) results.object(one);
-  for (Figure& figure : hammer_figures(study)) results.figures.push_back(std::move(figure));
+  results.draw([&] { return hammer_figures(study); });
   return results;
 }
 

@@ -195,7 +195,7 @@ Results report(const ModalStudySettings& settings, const std::vector<RecordModes
     for (const Objection& one : found.objections) results.object(one, {}, refutes(one, found));
     if (Table rejected = rejected_table(found, suffix); rejected.rows() > 0)
       results.table(std::move(rejected));
-    for (Figure& figure : figures(found, suffix)) results.figures.push_back(std::move(figure));
+    results.draw([&] { return figures(found, suffix); });
     if (const auto shapes = measured_shapes(found))
       results.attachments.push_back(
           {{"modes" + suffix + ".glb", "modes" + suffix + ".uff"},

@@ -157,6 +157,23 @@ TEST(Results, PrintTextsAndTablesInTheirOrder) {
             "And a text after the table.\n");
 }
 
+TEST(Results, ForATerminalAloneHaveNoFigures) {
+  int drawn = 0;
+  const auto figures = [&] {
+    ++drawn;
+    return std::vector<Figure>{Figure{"motion", {}}};
+  };
+  Results found;
+  {
+    const TerminalOnly shown;
+    found.draw(figures);
+  }
+  EXPECT_EQ(drawn, 0);
+  found.draw(figures);
+  ASSERT_EQ(found.figures.size(), 1u);
+  EXPECT_EQ(found.figures[0].name, "motion");
+}
+
 TEST(Results, JsonOnTheTerminalIsTheFile) {
   TemporaryFolder temporary;
   ResultDirectory directory(temporary.path / "out", false);
