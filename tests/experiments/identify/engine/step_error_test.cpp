@@ -6,6 +6,8 @@
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/config/readers.hpp"
 #include "experiments/identify/engine/comparison.hpp"
+#include "experiments/record/read_record.hpp"
+#include "tests/experiments/results/temporary_folder.hpp"
 
 namespace beamid::experiments::step_error_test {
 namespace {
@@ -88,6 +90,87 @@ TEST(StepError, IsSaidOfTheDampingOfEveryLinearModel) {
       testing::HasSubstr("WRONG BY THE STEP: at 2 ms forward_euler has a damping ratio of"));
   EXPECT_THAT(texts(found.runs[0].objections), testing::Not(said));
   EXPECT_THAT(texts(found.runs[1].objections), said);
+}
+
+constexpr const char* two_masses = R"toml(
+[system]
+mass = "mass.mtx"
+stiffness = "none.mtx"
+labels = ["low", "high"]
+[[system.parameters]]
+name = "springs"
+stiffness = "springs.mtx"
+[[system.parameters]]
+name = "dashpots"
+damping = "dashpots.mtx"
+[excitation]
+kind = "release"
+at = "high"
+deflection_m = 0.01
+[simulation]
+duration_s = 8
+sampling_rate_hz = 1000
+seed = 3
+[[sensors]]
+at = "low"
+noise_m_per_s2 = 0.001
+[[sensors]]
+at = "high"
+noise_m_per_s2 = 0.001
+[model]
+name = "beam"
+[reduction]
+method = "none"
+[[parameters]]
+quantity = "factor"
+name = "springs"
+[[parameters]]
+quantity = "factor"
+name = "dashpots"
+relative_deviation = 1
+)toml";
+
+// Dashpots of user-supplied matrices, in proportion to the springs. Oracle: forward Euler finds C + dt K
+// (docs/theory/many_degrees_of_freedom.md), here 1 + dt 1000 / 0.6 times the dashpots.
+TEST(StepError, IsSaidOfDashpotsInMatrices) {
+  const TemporaryFolder here;
+  const auto write = [&](const char* name, const char* entries) {
+    std::ofstream(here.path / name) << "%%MatrixMarket matrix coordinate real symmetric\n2 2 " << entries;
+  };
+  write("mass.mtx", "2\n1 1 2\n2 2 1\n");
+  write("none.mtx", "0\n");
+  write("springs.mtx", "3\n1 1 3000\n2 1 -1000\n2 2 1000\n");
+  write("dashpots.mtx", "3\n1 1 1.8\n2 1 -0.6\n2 2 0.6\n");
+  std::ofstream(here.path / "two.toml") << two_masses;
+  Experiment experiment = read_experiment(here.path / "two.toml");
+  experiment.filters = {experiment.filter};
+  experiment.reductions = {experiment.reduction};
+  experiment.discretisations = {"exponential", "forward_euler"};
+  const Comparison found =
+      compare(experiment, simulated_record(experiment, here.path, silent), here.path, silent);
+  const auto said = testing::Contains(
+      testing::HasSubstr("WRONG BY THE STEP: at 1 ms forward_euler has a damping ratio of"));
+  EXPECT_THAT(texts(found.runs[0].objections), testing::Not(said));
+  EXPECT_THAT(texts(found.runs[1].objections), said);
+  EXPECT_NEAR(found.runs[0].parameters.at(1).estimate.value, 1.0, 1e-3);
+  EXPECT_NEAR(found.runs[1].parameters.at(1).estimate.value, 1.0 + 1e-3 * 1000 / 0.6, 0.02);
+}
+
+// A cubic spring, K = 500 N/m at rest, and the equivalent mass 1.0806 kg. Oracle: for w the midpoint rule
+// finds tan(w dt / 2) 2 / dt, of which the stiffness is (w dt)^2 / 6 too large: 0.193 % at 3.424 Hz and 5 ms.
+TEST(StepError, OfASpringThatIsNotLinearIsThatAtRest) {
+  const std::filesystem::path folder = BEAMID_SOURCE_DIR "/docs/tutorials/11_nonlinear_oscillator";
+  Experiment experiment = read_experiment(folder / "duffing.toml");
+  experiment.filters = {experiment.filter};
+  experiment.reductions = {experiment.reduction};
+  experiment.discretisations = {"runge_kutta_4", "implicit_midpoint"};
+  const Comparison found =
+      compare(experiment, measured_record("duffing", read_record(folder / "duffing.csv")), folder, silent);
+  EXPECT_THAT(texts(found.runs[0].objections),
+              testing::Not(testing::Contains(testing::HasSubstr("WRONG BY THE STEP"))));
+  EXPECT_THAT(texts(found.runs[1].objections),
+              testing::Contains(testing::StartsWith("WRONG BY THE STEP: at 5 ms implicit_midpoint makes the "
+                                                    "stiffness of the mode at 3.427 Hz 0.19 % too large")));
 }
 
 }  // namespace
