@@ -167,43 +167,49 @@ double valley_beside(const VectorXd& spectrum, Index k) {
   return deepest_needed;
 }
 
-/// The upper median of a window that moves along values, in O(log N) for each step and each question: how
-/// many values of the window lie at or below one, by a tree of counts over their ranks [fenwick1994].
+/// The upper median of a window that moves along values. The first questions count the values of their
+/// window; from there on a tree of counts over ranks answers in O(log N) [fenwick1994], whose sorting takes
+/// as long as 80 windows of a million values.
 class MovingMedian {
  public:
-  explicit MovingMedian(const VectorXd& values)
-      : sorted_(values), ranks_(values.size()), counts_(static_cast<std::size_t>(values.size()) + 1, 0) {
-    std::vector<Index> order(static_cast<std::size_t>(values.size()));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::ranges::sort(order, {}, [&](Index k) { return values[k]; });
-    for (std::size_t rank = 0; rank < order.size(); ++rank) {
-      sorted_[static_cast<Index>(rank)] = values[order[rank]];
-      ranks_[order[rank]] = static_cast<Index>(rank);
-    }
-  }
+  /// The values must outlive this.
+  explicit MovingMedian(const VectorXd& values) : values_(values) {}
 
-  /// To the values left .. right, none of them before those of the last window.
-  void move(Index left, Index right) {
+  /// Whether value < times the median of the values left .. right, none of them before those of the last
+  /// window.
+  bool is_below(double value, double times, Index left, Index right) {
+    constexpr int first_ones = 32;
+    const auto is_low = [&](double one) { return times * one <= value; };
+    const Index half = (right + 1 - left) / 2;
+    if (asked_++ < first_ones)
+      return std::ranges::count_if(values_.segment(left, right + 1 - left), is_low) <= half;
+    if (sorted_.size() == 0) sort();
     for (; end_ <= right; ++end_) add(end_, 1);
     for (; begin_ < left; ++begin_) add(begin_, -1);
-  }
-
-  /// Whether value < times median.
-  bool is_below(double value, double times) const {
-    const auto above = std::partition_point(sorted_.begin(), sorted_.end(),
-                                            [&](double one) { return times * one <= value; });
+    const auto above = std::partition_point(sorted_.begin(), sorted_.end(), is_low);
     Index within = 0;
     for (auto node = above - sorted_.begin(); node > 0; node -= node & -node)
       within += counts_[static_cast<std::size_t>(node)];
-    return within <= (end_ - begin_) / 2;
+    return within <= half;
   }
 
  private:
+  const VectorXd& values_;
+  int asked_ = 0;
   VectorXd sorted_;
   Eigen::VectorX<Index> ranks_;
   std::vector<Index> counts_;  ///< a tree, from 1 on
   Index begin_ = 0, end_ = 0;
 
+  void sort() {
+    std::vector<Index> order(static_cast<std::size_t>(values_.size()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::ranges::sort(order, {}, [&](Index k) { return values_[k]; });
+    sorted_ = values_(order);
+    ranks_.resize(values_.size());
+    for (std::size_t rank = 0; rank < order.size(); ++rank) ranks_[order[rank]] = static_cast<Index>(rank);
+    counts_.assign(order.size() + 1, 0);
+  }
   void add(Index k, Index count) {
     for (Index node = ranks_[k] + 1; node < std::ssize(counts_); node += node & -node)
       counts_[static_cast<std::size_t>(node)] += count;
@@ -230,8 +236,7 @@ std::vector<SpectralLine> spectral_lines(const Eigen::MatrixXd& outputs, double 
     const Index from = std::max<Index>(0, k - lobe), to = std::min(spectrum.size() - 1, k + lobe);
     if (spectrum[k] < least || spectrum[k] < spectrum.segment(from, to - from + 1).maxCoeff()) continue;
     const Index left = std::max<Index>(0, k - around), right = std::min(spectrum.size() - 1, k + around);
-    noise.move(left, right);
-    if (noise.is_below(spectrum[k], settings.above_noise)) continue;
+    if (noise.is_below(spectrum[k], settings.above_noise, left, right)) continue;
     if (spectrum[k] < settings.above_valley * valley_beside(spectrum, k)) continue;
     lines.push_back({first.frequency_hz[k], spectrum[k]});
   }

@@ -90,7 +90,7 @@ AmplitudeSpectrum amplitude_spectrum(const Eigen::VectorXd& signal, double inter
   for (Eigen::Index k = 0; k < size; ++k) {
     result.frequency_hz[k] = static_cast<double>(k) / (static_cast<double>(length) * interval);
     result.amplitude[k] =
-        2.0 / count * std::abs(spectrum[static_cast<std::size_t>(k)]);  // the window's mean is 1
+        2.0 / count * std::sqrt(std::norm(spectrum[static_cast<std::size_t>(k)]));  // the window's mean is 1
   }
   return result;
 }
@@ -110,7 +110,8 @@ double strongest_frequency(const Eigen::VectorXd& signal, double interval) {
                                 " samples; expected at least 16 to find its frequency");
   const auto& [lines, length] = padded_spectrum(signal);
   Eigen::VectorXd magnitude(static_cast<Eigen::Index>(lines.size()));
-  std::ranges::transform(lines, magnitude.begin(), [](const Complex& line) { return std::abs(line); });
+  std::ranges::transform(lines, magnitude.begin(),
+                         [](const Complex& line) { return std::sqrt(std::norm(line)); });
   const auto first = magnitude.begin() + static_cast<std::ptrdiff_t>(2 * length / count + 1);
   const auto peak = std::max_element(first, magnitude.end() - 1);
   if (!(*peak > 0)) throw std::invalid_argument("a signal without any variation has no frequency");
