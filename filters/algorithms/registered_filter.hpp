@@ -118,6 +118,18 @@ class Observed {
 using DynamicUnscentedKalman = UnscentedKalman<double, Eigen::Dynamic, Eigen::Dynamic>;
 using DynamicSquareRootKalman = SquareRootKalman<double, Eigen::Dynamic, Eigen::Dynamic>;
 
+/// The same filter of as many outputs as were measured.
+template <class Algorithm>
+struct OfAnyOutputs {
+  using Type = Algorithm;
+};
+template <int N, int P>
+struct OfAnyOutputs<ExtendedKalman<double, N, P>> {
+  using Type = ExtendedKalman<double, N, Eigen::Dynamic>;
+};
+template <class Algorithm>
+using AnyOutputs = typename OfAnyOutputs<Algorithm>::Type;
+
 template <class Algorithm>
 class RegisteredFilter final : public Filter {
  public:
@@ -144,18 +156,17 @@ class RegisteredFilter final : public Filter {
 
   void take_in(const Eigen::VectorXd& output, const Eigen::VectorXd& input) override {
     at_step_.set_input(input);
-    algorithm_.look(at_step_, output);
-    const auto& seen = algorithm_.seen;
-    if (!(seen.smallest_pivot > 0.0)) refuse(seen.covariance);
-    correction_.innovation = seen.innovation;
-    correction_.innovation_covariance = seen.covariance;
-    correction_.whitened = seen.whitened;
-    correction_.normalised_square = seen.normalised_square;
-    const double log_determinant = 2.0 * seen.root.diagonal().array().log().sum();
-    const double constant = static_cast<double>(output.size()) * std::log(2.0 * std::numbers::pi);
-    correction_.log_likelihood = -0.5 * (seen.normalised_square + log_determinant + constant);
-    formed_ = false;
-    algorithm_.update(at_step_);
+    if constexpr (outputs != Eigen::Dynamic)
+      if (output.size() != outputs) {  // some were not measured
+        AnyOutputs<Algorithm> some;
+        some.mean = algorithm_.mean;
+        some.covariance = algorithm_.covariance;
+        take_with(some, output);
+        algorithm_.mean = some.mean;
+        algorithm_.covariance = some.covariance;
+        return check();
+      }
+    take_with(algorithm_, output);
     check();
   }
 
@@ -174,6 +185,23 @@ class RegisteredFilter final : public Filter {
 
  private:
   static constexpr bool carries_root = std::is_same_v<Algorithm, DynamicSquareRootKalman>;
+  static constexpr int outputs = decltype(Algorithm::seen.innovation)::RowsAtCompileTime;
+
+  template <class OneAlgorithm>
+  void take_with(OneAlgorithm& algorithm, const Eigen::VectorXd& output) {
+    algorithm.look(at_step_, output);
+    const auto& seen = algorithm.seen;
+    if (!(seen.smallest_pivot > 0.0)) refuse(seen.covariance);
+    correction_.innovation = seen.innovation;
+    correction_.innovation_covariance = seen.covariance;
+    correction_.whitened = seen.whitened;
+    correction_.normalised_square = seen.normalised_square;
+    const double log_determinant = 2.0 * seen.root.diagonal().array().log().sum();
+    const double constant = static_cast<double>(output.size()) * std::log(2.0 * std::numbers::pi);
+    correction_.log_likelihood = -0.5 * (seen.normalised_square + log_determinant + constant);
+    formed_ = false;
+    algorithm.update(at_step_);
+  }
 
   void set_root(const Gaussian& estimate) {
     if (estimate.factor.size() == 0) return lower_root(estimate.covariance, algorithm_.root);

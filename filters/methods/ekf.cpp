@@ -10,12 +10,14 @@ std::unique_ptr<Filter> extended_kalman(std::unique_ptr<DiscreteModel> model) {
       std::move(model));
 }
 
-// Of one mode, K and C, with the sensor's bias or without it, the sizes are known to the compiler, which
-// unrolls the products: a step takes half of the time.
+// Of one mode, K and C, with the sensor's bias or without it, seen by one or two channels, the sizes are
+// known to the compiler, which unrolls the products.
 template <int N>
 std::unique_ptr<Filter> of_one_mode(std::unique_ptr<DiscreteModel> model) {
-  return model->output_labels().size() == 1 ? extended_kalman<N, 1>(std::move(model))
-                                            : extended_kalman<N, Eigen::Dynamic>(std::move(model));
+  const std::size_t outputs = model->output_labels().size();
+  if (outputs == 1) return extended_kalman<N, 1>(std::move(model));
+  if (outputs == 2) return extended_kalman<N, 2>(std::move(model));
+  return extended_kalman<Eigen::Dynamic, Eigen::Dynamic>(std::move(model));
 }
 
 std::unique_ptr<Filter> make_ekf(std::unique_ptr<DiscreteModel> model, const Options&) {
