@@ -76,7 +76,7 @@ int run_backbone(const Values& values) {
 Command backbone_command() {
   return {"backbone",
           "RECORD [--config FILE] [--mass KG] [--amplitude-ratio R] [--out DIR]",
-          "the force law of one mode out of a decay: stiffness and damping by amplitude, backbone, loop",
+          "the force law of one mode from a decay: stiffness and damping by amplitude, backbone, loop",
           {record_argument()},
           {backbone_options(), record_options(), output_options()},
           "  beamid backbone release.csv --mass 1.08 --out results\n"

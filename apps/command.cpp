@@ -161,8 +161,8 @@ const std::vector<CommandGroup>& command_groups() {
       {"Records",
        {prepare_command(), track_command(), backbone_command(), stream_command(), check_command(),
         steps_command(), sense_command(), substructures_command()}},
-      {"Modes measured", {update_command(), twins_command(), posterior_command()}},
-      {"Beams and tests to come",
+      {"Measured modes", {update_command(), twins_command(), posterior_command()}},
+      {"Models and planned tests",
        {frf_command(), frame_command(), reduce_command(), identifiability_command()}},
       {"Many runs", {sweep_command(), efficiency_command()}},
       {"Studies", study_commands()},
@@ -201,6 +201,21 @@ void print_text(std::ostream& stream, const std::string& text, std::size_t width
   for (const std::string& line : wrapped(text, width)) stream << line << "\n";
 }
 
+/// A command per line; one that is too wide goes on below, behind a backslash, and can be copied as it
+/// stands.
+void print_examples(std::ostream& stream, const std::string& examples, std::size_t width) {
+  std::istringstream lines(examples);
+  for (std::string line; std::getline(lines, line);) {
+    while (line.size() > width) {
+      const std::size_t blank = line.rfind(" -", width - 2);
+      if (blank == std::string::npos || line.find_first_not_of(' ') >= blank) break;
+      stream << line.substr(0, blank) << " \\\n";
+      line = "      " + line.substr(blank + 1);
+    }
+    stream << line << "\n";
+  }
+}
+
 int run_help(const Values& values) {
   const std::size_t width = terminal_page().width;
   if (values.has("command"))
@@ -228,7 +243,7 @@ std::string exit_codes(const Command& command) {
 void print_overview(std::ostream& stream, std::size_t width) {
   constexpr std::size_t column = 19;
   print_text(stream,
-             "beamid " BEAMID_VERSION ": what a vibration record shows about a beam, and how far to trust it",
+             "beamid " BEAMID_VERSION ": stiffness, damping and modes of structures from vibration records",
              width);
   stream << "\n  beamid COMMAND [OPTIONS]\n";
   for (const CommandGroup& group : command_groups()) {
@@ -257,7 +272,8 @@ void print_help(std::ostream& stream, const Command& command, std::size_t width)
   stream << "\nOf every command:\n";
   for (const Option& option : common_options())
     print_item(stream, option.synopsis(), option.help, column, width);
-  stream << "\nExamples\n" << command.examples;
+  stream << "\nExamples\n";
+  print_examples(stream, command.examples, width);
   if (!command.notes.empty()) stream << "\n";
   print_text(stream, command.notes, width);
   stream << "\nExit code\n";

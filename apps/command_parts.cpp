@@ -234,11 +234,11 @@ OptionGroup update_options() {
       "Options",
       {config_option("experiment file: the structure, [[parameters]], [[sensors]] of the shapes").needed(),
        number("model-error", "PERCENT",
-              "what a predicted frequency is trusted to, one standard deviation [%]")
+              "standard deviation of a predicted frequency: the error of the model [%]")
            .from(0)
            .up_to(20)
            .by_default("0.5"),
-       number("shape-error", "PERCENT", "the same of a component of a shape, of the largest component [%]")
+       number("shape-error", "PERCENT", "the same of a component of a shape, relative to the largest [%]")
            .from(0)
            .up_to(100)
            .by_default("3"),

@@ -52,8 +52,8 @@ OptionGroup compare_options() {
             "experiment file of the beam that a record is simulated from; without it and without RECORD the "
             "beam as described"),
        text("channel", "NAME", "use this channel of the record; without it all").repeated(),
-       reduction_option("compare this one").repeated(), filter_option("likewise").repeated(),
-       discretisation_option("likewise").repeated(), model_option()}};
+       reduction_option("a reduction to compare").repeated(), filter_option("a filter to compare").repeated(),
+       discretisation_option("a discretisation to compare").repeated(), model_option()}};
 }
 
 int run_compare(const Values& values) {
@@ -102,7 +102,7 @@ int run_compare(const Values& values) {
 Command compare_command() {
   return {"compare",
           "[RECORD | --truth FILE] [--config FILE] [--reduction NAME]... [--out DIR]",
-          "one record identified on the continuum and on reductions of it: what each costs and saves",
+          "one record identified on the mesh and on reductions of it: bias, interval and time of each",
           {record_argument()},
           {compare_options(), beam_options(), column_options(), output_options()},
           "  beamid compare --config cantilever.toml --out results\n"

@@ -42,7 +42,7 @@ Command identifiability_command() {
                            .by_default("modal_truncation:modes=3")});
   return {"identifiability",
           "[--config FILE] [BEAM OPTIONS] [--model NAME] [--reduction NAME] [--out DIR]",
-          "what a test can determine at best of which parameter, and what would change that",
+          "the accuracy that a planned test allows for each parameter, and what would improve it",
           {},
           {own, beam_options(), output_options()},
           "  beamid identifiability\n"

@@ -17,8 +17,8 @@ OptionGroup inspect_options() {
   return {
       "Options",
       {text("write", "FILE.toml",
-            "write the experiment file whose [record] states all that was recognised or stated here: with "
-            "--config FILE.toml other commands need no options of the record")
+            "write an experiment file with all that was recognised or stated here; other commands then need "
+            "only --config FILE.toml")
            .unrecorded()}};
 }
 

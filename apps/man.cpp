@@ -66,7 +66,7 @@ std::string page_of(const Command& command) {
 
 std::string overview() {
   std::ostringstream page;
-  begin(page, "beamid", "what a vibration record shows about a beam, and how far to trust it");
+  begin(page, "beamid", "stiffness, damping and modes of structures from vibration records");
   page << ".SH SYNOPSIS\n.B beamid\n\\fICOMMAND\\fR [\\fIOPTIONS\\fR]\n.SH COMMANDS\n";
   for (const CommandGroup& group : command_groups()) {
     if (group.title.empty()) continue;

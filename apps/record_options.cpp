@@ -198,7 +198,8 @@ OptionGroup column_options() {
            .one_of(quantity_names()),
        text("unit", "UNIT", "of its numbers: g, m/s2, mm, N, um/m, ...; one for each column or for all")
            .repeated(),
-       text("position", "M|PLACE", "where its sensor sits [m], or the name of that place; likewise")
+       text("position", "M|PLACE",
+            "position of its sensor [m], or the name of that place; one for each column or for all")
            .repeated(),
        text("time", "N|NAME[:UNIT]", "column of time, in s unless the unit is given: 1, t:ms"),
        number("rate", "HZ", "exact sampling rate, in place of rounded times or where there are none [Hz]")

@@ -29,7 +29,7 @@ int run_twins(const Values& values) {
 Command twins_command() {
   return {"twins",
           "[MODES] --config FILE [--model-error PERCENT] [--starts N] [--out DIR]",
-          "every set of parameters that explains the modes as well, and what would decide",
+          "all sets of parameters that explain the modes equally well, and the measurement that decides",
           {{"modes", false, false}},
           {update_options(), output_options()},
           "  beamid twins --config building.toml\n"

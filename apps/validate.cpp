@@ -168,7 +168,7 @@ Command validate_command() {
   return {
       "validate",
       "FILE [--record RECORD]",
-      "check an experiment file and its record, and show what was understood",
+      "check an experiment file and its record, and show each value in force",
       {{.name = "file", .required = true}},
       {{"Options", {text("record", "RECORD", "read this record too, instead of the one the file names")}}},
       "  beamid validate cantilever.toml\n"

@@ -105,17 +105,16 @@ const Schema<DescribedRecord>& record_keys() {
                "[\"ground.csv\", \"floor_1.csv\"]")
           .key("reader", &R::reader, "a name from `beamid list readers`", "\"lvm\"")
           .fallback("what the file shows to be")
-          .choice(
-              "separator", &R::separator,
-              {std::pair{"auto", '\0'},
-               {"tab", '\t'},
-               {"comma", ','},
-               {"semicolon", ';'},
-               {"bar", '|'},
-               {"space", ' '}},
-              "between columns; auto takes the first of tab, semicolon, bar (|), comma that the first row of "
-              "numbers shows, else blanks",
-              "\"semicolon\"")
+          .choice("separator", &R::separator,
+                  {std::pair{"auto", '\0'},
+                   {"tab", '\t'},
+                   {"comma", ','},
+                   {"semicolon", ';'},
+                   {"bar", '|'},
+                   {"space", ' '}},
+                  "between columns; auto takes the first of tab, semicolon, bar, comma that the first row of "
+                  "numbers shows, else blanks",
+                  "\"semicolon\"")
           .choice("decimal", &R::decimal, {std::pair{"auto", '\0'}, {"point", '.'}, {"comma", ','}},
                   "between whole and fraction; auto takes the comma where the first fifty rows show commas "
                   "inside fields and no point",

@@ -330,18 +330,19 @@ sky = '#56b4e9'; black = '#000000'; grey = '#7f7f7f'
 set border 3 linewidth 0.8 linecolor rgb '#404040'
 set tics out nomirror scale 0.7,0.4
 set grid back linetype 1 linewidth 0.5 linecolor rgb '#dcdcdc'
-set key Left reverse samplen 2.4 spacing 1.15
+set key Left reverse samplen 2.4
 
 # Each picture in turn: text stays text in the SVG; the PNG has twice as many pixels.
+# Rows of legends have equal heights in both.
 do for [picture in 'svg png'] {{
   if (picture eq 'svg') {{
     set terminal svg size {width},{height} enhanced font 'DejaVu Sans,13' background '#ffffff'
     set title font ',14' offset 0,-0.4; set xlabel offset 0,0.75
-    set xtics offset 0,0.35
+    set xtics offset 0,0.35; set key spacing 1
   }} else {{
     set terminal pngcairo size {width2},{height2} enhanced font 'DejaVu Sans,10' fontscale 2 \
         linewidth 2 pointscale 2 dashlength 1.6
-    set title font ',11'; set xlabel offset 0,0.3; set xtics offset 0,0
+    set title font ',11'; set xlabel offset 0,0.3; set xtics offset 0,0; set key spacing 1.15
   }}
   set output '{name}.'.picture
   set multiplot

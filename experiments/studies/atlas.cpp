@@ -309,7 +309,7 @@ class AtlasStudy final : public Study {
 
 const bool atlas_registered = study_registry().add(
     {"atlas",
-     "what every discretisation does to stiffness and damping, in closed form and measured",
+     "the bias of stiffness and damping by every discretisation: closed form and filter",
      "[hairer1996]",
      {{"frequency", 3.4555, "Hz", "of the mode in question; by default that of the beam S(11.8)"},
       {"damping_ratio", 0.0045, "", "of it"},

@@ -279,7 +279,7 @@ class HigherModeStudy final : public Study {
 
 const bool noise_registered = study_registry().add(
     {"noise",
-     "when a filter of one mode may take the others for noise, and what to do when not",
+     "whether a filter of one mode may treat the others as noise, and the remedy if not",
      "[inverse2009]",
      {{"modes", 3.0, "", "of the continuum in the records"},
       {"trials", 6.0, "", "seeded, per beam, blow and sensor"},

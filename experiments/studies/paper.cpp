@@ -42,7 +42,7 @@ class PaperStudy final : public Study {
 
 const bool paper_registered = study_registry().add(
     {"paper",
-     "the 2009 steel-beam study: reproduced, explained and put right",
+     "the 2009 steel-beam study: reproduced, explained and corrected",
      "[inverse2009]",
      {{"seed", 2009.0, "", "seed of the sensor noise; the same seed gives the same bytes"},
       {"trials", 100.0, "", "seeded repetitions per beam against the Cramer-Rao bound"}},

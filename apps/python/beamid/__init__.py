@@ -1,4 +1,4 @@
-"""What a vibration record shows about a beam, and how far to trust it.
+"""Stiffness, damping and modes of structures from vibration records.
 
 Records and structures go in, results come out; every command of `beamid` is a function of the same name, and the
 words are those of the command's options and of the experiment file:
