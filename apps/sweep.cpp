@@ -9,6 +9,7 @@
 #include "apps/interruption.hpp"
 #include "experiments/config/read_experiment.hpp"
 #include "experiments/identify/verdict/plausibility.hpp"
+#include "experiments/results/text.hpp"
 #include "experiments/studies/sweep/report.hpp"
 #include "experiments/sweep/manifest.hpp"
 #include "experiments/sweep/repeats.hpp"
@@ -126,6 +127,15 @@ int with_processes(const std::function<int()>& work) {
   return work();
 }
 
+/// The command as far as the plan is no part of it.
+std::string without_plan(const Values& values) {
+  std::string command = "beamid sweep";
+  if (values.has("record")) command += " " + shell_word(values.texts("record")[0]);
+  for (const char* option : {"config", "truth"})
+    if (values.has(option)) command += fmt::format(" --{} {}", option, shell_word(values.text(option)));
+  return command;
+}
+
 int run_sweep(const Values& given) {
   Values values = given;
   if (values.has("merge")) return merge_folders(values);
@@ -170,7 +180,7 @@ int run_sweep(const Values& given) {
       interruption.say(fmt::format("interrupted; {} cases {}", what.substr(0, what.find(" cases")), kept));
       shown(what);
     };
-    Results results = report(manifest, plan, perform(source, plan, settings, progress));
+    Results results = report(manifest, plan, perform(source, plan, settings, progress), without_plan(values));
     warn(results, experiment);
     return results;
   });

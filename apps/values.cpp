@@ -14,6 +14,7 @@
 
 #include "apps/command.hpp"
 #include "apps/command_parts.hpp"
+#include "experiments/results/text.hpp"
 #include "experiments/text/choice.hpp"
 #include "experiments/text/fields.hpp"
 
@@ -29,15 +30,6 @@ bool is_number(const std::string& word) {
 
 bool looks_like_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && !is_number(word);
-}
-
-/// A word as a shell takes it.
-std::string quoted(const std::string& word) {
-  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
 }
 
 std::vector<Found> options_of(const Command& command) {
@@ -155,7 +147,7 @@ Values::Values(const Command& command, const Words& words, Receiver* receiver)
       const Argument& argument = command.words[place];
       given_[argument.name].push_back(values[0]);
       if (!argument.several) ++place;
-      line_ += " " + quoted(values[0]);
+      line_ += " " + experiments::shell_word(values[0]);
       continue;
     }
     if (given_.contains(option->name) && option->values != 0 && !option->repeats)
@@ -165,7 +157,7 @@ Values::Values(const Command& command, const Words& words, Receiver* receiver)
     if (option->name == "help" || option->name == "version") return;
     if (!option->recorded) continue;
     line_ += " --" + option->name;
-    for (const std::string& value : values) line_ += " " + quoted(value);
+    for (const std::string& value : values) line_ += " " + experiments::shell_word(value);
   }
   for (const OptionGroup& group : command.options)
     for (const Option& one : group.options) {

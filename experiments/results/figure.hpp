@@ -39,6 +39,21 @@ enum class CurveStyle { line, dashed, dotted, thin, points, open_points, stems, 
 /// colour of the curve after it; a label that an earlier panel of the figure has keeps its colour.
 enum class Colour { automatic, blue, vermillion, green, purple, orange, sky, black, grey };
 
+/// What a page shows of a point that is clicked, in text.
+struct PointDetail {
+  std::string title;                           ///< "set 2"
+  std::vector<std::vector<std::string>> rows;  ///< of one table; the first is its head
+  std::string note = {};                       ///< below the table
+  std::string command = {};                    ///< repeats what the point stands for
+  std::string mode = {};                       ///< name of a mode of the section's model, which then swings
+};
+
+/// One number of each point, for a click.
+struct PointFact {
+  std::string label;  ///< "damping ratio [%]"
+  Eigen::VectorXd values;
+};
+
 /// Labels and titles are UTF-8 and taken literally but for "^{...}" and "_{...}", which raise and lower.
 struct Curve {
   std::string label;  ///< in the legend; empty: not there
@@ -48,6 +63,10 @@ struct Curve {
   Eigen::VectorXd lower = {}, upper = {};  ///< (N) of a band or of error bars, else empty
   Colour colour = Colour::automatic;
   Eigen::Index points = 0;  ///< in the frame before it was thinned; 0: it was not
+  // A click on a point, in a page: numbers and a mode shape, or text.
+  std::vector<PointFact> facts = {};
+  Eigen::MatrixXcd shapes = {};           ///< (channels of the panel x N), each of any scale; or empty
+  std::vector<PointDetail> details = {};  ///< (N), or one of the whole curve; empty: none
 };
 
 /// Whether a curve is drawn through its points, or between them, so that its envelope may stand for it.
@@ -76,6 +95,10 @@ struct Panel {
   std::vector<Curve> curves = {};
   Legend legend = Legend::below;
   std::vector<std::string> remarks = {};  ///< right of the frame, beside the places 1, 2, ... of the y axis
+  /// Of mode shapes behind points: names of the channels, and where they stand on a line, 0 to 1; without
+  /// places, as of channels of different quantities, a shape is drawn as bars.
+  std::vector<std::string> channels = {};
+  Eigen::VectorXd places = {};
 
   using Values = Eigen::VectorXd;
   Panel& add(CurveStyle style, std::string label, Values x, Values y, Colour colour = Colour::automatic);

@@ -113,10 +113,12 @@ Panel forest_panel(const ForestPlot& plot) {
     panel.add(CurveStyle::intervals, series.label, value, place, series.colour);
     panel.curves.back().lower = lower;
     panel.curves.back().upper = upper;
+    panel.curves.back().details = series.details;
     if (at.empty()) continue;
     panel.add(CurveStyle::arrows, "", forest_values(to), forest_values(at), series.colour);
     panel.curves.back().lower = forest_values(from);
     panel.curves.back().upper = forest_values(to);
+    if (series.details.size() == 1) panel.curves.back().details = series.details;
   }
   if (count == 1)
     for (std::size_t i = 0; i < plot.names.size(); ++i)

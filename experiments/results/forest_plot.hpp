@@ -14,6 +14,7 @@ struct ForestSeries {
   std::string label;  ///< in the legend; empty where there is one series only
   std::vector<double> value, lower, upper;
   Colour colour = Colour::blue;
+  std::vector<PointDetail> details = {};  ///< of a click (figure.hpp): one of all rows, or of each
 };
 
 struct ForestReference {

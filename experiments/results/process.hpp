@@ -20,4 +20,17 @@ struct ProcessResult {
 ProcessResult run_process(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           double longest = 0.0);
 
+// A page as PDF or picture, as a browser prints it.
+
+/// The name of one that is on PATH: chromium or google-chrome.
+/// @throws std::invalid_argument when there is none.
+std::string browser_on_path();
+
+/// Prints the page by Chromium or Chrome, without a window and without the network: to PDF, or where `file`
+/// ends in .png its beginning, 960 x 928 pixels, as it is at rest. A browser, since the page is made for
+/// one: its tables, breaks and vector figures come out as on the screen, which VTK's exporter, made for
+/// rendered scenes, has no notion of. The file appears whole or not at all.
+/// @throws as browser_on_path(); std::runtime_error with its words when it prints nothing.
+void print_page(const std::filesystem::path& page, const std::filesystem::path& file);
+
 }  // namespace beamid::experiments

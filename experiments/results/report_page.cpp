@@ -1,111 +1,18 @@
 #include "experiments/results/report_page.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <set>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include "experiments/results/gnuplot_axes.hpp"
 #include "experiments/results/page/figure_data.hpp"
-#include "experiments/results/process.hpp"
 
 namespace beamid::experiments {
-namespace {
-
-namespace fs = std::filesystem;
-
-const std::vector<std::string> browsers{"chromium", "chromium-browser", "google-chrome",
-                                        "google-chrome-stable"};
-
-bool is_pdf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string head(4, ' ');
-  return stream.read(head.data(), 4) && head == "%PDF";
-}
-
-/// A file's address [rfc3986]: all but plain letters and slashes by their codes, as "#" ends a path.
-std::string address_of(const fs::path& file) {
-  std::string address = "file://";
-  for (const char letter : fs::absolute(file).string()) {
-    const auto byte = static_cast<unsigned char>(letter);
-    const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-                       (letter >= '0' && letter <= '9') ||
-                       std::string_view("/-._~").find(letter) != std::string_view::npos;
-    address += plain ? std::string(1, letter) : fmt::format("%{:02X}", byte);
-  }
-  return address;
-}
-
-/// The browser's own files, which it would leave in the user's home.
-class Profile {
- public:
-  Profile() {
-    std::string name = (fs::temp_directory_path() / "beamid_browser_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder can be made in " + name);
-    folder_ = name;
-  }
-  ~Profile() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  Profile(const Profile&) = delete;
-  Profile& operator=(const Profile&) = delete;
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
-
-}  // namespace
-
-std::string browser_for_pdf() {
-  const char* const path = std::getenv("PATH");
-  for (const std::string& name : browsers) {
-    std::istringstream folders(path ? path : "");
-    for (std::string folder; std::getline(folders, folder, ':');)
-      if (!folder.empty() && access((fs::path(folder) / name).c_str(), X_OK) == 0) return name;
-  }
-  throw std::invalid_argument(
-      "a PDF is printed by a browser, and neither chromium nor google-chrome is installed; expected one of "
-      "them (Debian: chromium), or --out FILE.html alone, to be printed from any other");
-}
-
-void print_pdf(const fs::path& page, const fs::path& pdf) {
-  const std::string browser = browser_for_pdf();
-  const Profile profile;
-  const fs::path printed = profile.folder() / "page.pdf";
-  std::vector<std::string> words{"timeout",  // coreutils: a browser that waits for something waits for ever
-                                 "120",
-                                 browser,
-                                 "--headless",
-                                 "--disable-gpu",
-                                 "--no-first-run",
-                                 "--disable-dev-shm-usage",
-                                 "--user-data-dir=" + profile.folder().string(),
-                                 "--no-pdf-header-footer",
-                                 "--print-to-pdf=" + printed.string()};
-  if (geteuid() == 0) words.insert(words.begin() + 3, "--no-sandbox");  // it starts as root only without
-  words.push_back(address_of(page));
-  const ProcessResult result = run_process(words, profile.folder());
-  if (result.exit_code != 0 || !is_pdf(printed))
-    throw std::runtime_error(
-        fmt::format("{} has printed no text (exit code {}): {}", browser, result.exit_code, result.output));
-  const fs::path beside = pdf.string() + ".partial-" + std::to_string(getpid());
-  fs::copy_file(printed, beside, fs::copy_options::overwrite_existing);
-  fs::rename(beside, pdf);
-}
-
 namespace {
 
 // A section's borders in the file, by which pages are joined again.
@@ -191,10 +98,10 @@ std::string folded(const std::string& heading, const std::string& html, bool ope
 }
 
 /// Bytes that the data of figures may take beside the static pictures and so many of models in a page of
-/// 1.5 MB: 55 kB are its script and style, 55 kB its text.
+/// 1.5 MB: 67 kB are its script and style, 55 kB its text.
 std::size_t room_for_data(const std::vector<Figure>& figures, const std::filesystem::path& folder,
                           std::size_t models) {
-  constexpr std::size_t page = 1'500'000 - 110'000, least = 100'000;
+  constexpr std::size_t page = 1'500'000 - 122'000, least = 100'000;
   std::size_t pictures = models;
   for (const Figure& figure : figures) {
     std::ifstream file(folder / (figure.name + ".svg"), std::ios::binary);
@@ -304,37 +211,63 @@ std::string without_anchors(std::string html) {
   return html;
 }
 
+/// Whether the verdict above it states a warning already, and in full.
+bool is_only_warning(const Results& results, const Paragraph& paragraph) {
+  std::size_t warnings = 0;
+  for (const auto& part : results.report)
+    if (const auto* one = std::get_if<Paragraph>(&part)) warnings += is_warning(*one);
+  return warnings == 1 && paragraph.severity == Severity::warning &&
+         beginning(paragraph.text) == paragraph.text;
+}
+
+/// Of a page whose report begins without a heading: the experiment's title and the command.
+std::string title_of(const Results& results) {
+  const auto title = results.configuration.find("title");
+  if (title == results.configuration.end() || !title->is_string() || *title == "")
+    return "beamid " + results.command;
+  return title->get<std::string>() + ": " + results.command;
+}
+
 }  // namespace
 
 ReportSection report_section(const Results& results, const std::filesystem::path& folder) {
-  ReportSection section{"beamid " + results.command, {}};
+  ReportSection section{title_of(results), {}};
   struct Part {
     std::string heading, html;
     bool open = false;
   };
   std::vector<Part> parts(1);  // the answer, then a part below each further heading
-  bool titled = false;
+  bool titled = !results.report.empty() && !std::holds_alternative<Heading>(results.report.front());
+  bool answer_headed = titled;  // a verdict comes before all headings, the answer below the first one
+  Part remarks{"Remarks", {}};  // plain text behind the answer's tables: the figures come before it
   for (const auto& piece : results.report) {
+    const bool answering = parts.size() == 1, tabled = parts[0].html.find("<table") != std::string::npos;
     if (const auto* heading = std::get_if<Heading>(&piece)) {
-      if (std::exchange(titled, true))
-        parts.push_back({typeset_html(heading->text), {}});
-      else
+      if (!std::exchange(titled, true))
         section.title = heading->text;
+      else if (std::exchange(answer_headed, false) && !tabled)
+        parts[0].html += "<h2>" + typeset_html(heading->text) + "</h2>\n";
+      else
+        parts.push_back({typeset_html(heading->text), {}});
     } else if (const auto* paragraph = std::get_if<Paragraph>(&piece)) {
-      parts.back().html += paragraph_html(*paragraph);
-      parts.back().open |= is_warning(*paragraph) || paragraph->limits;
+      if (parts[0].html.empty() && is_only_warning(results, *paragraph)) continue;
+      Part& part = answering && tabled && !is_warning(*paragraph) ? remarks : parts.back();
+      part.html += paragraph_html(*paragraph);
+      part.open |= is_warning(*paragraph) || paragraph->limits;
     } else {
+      if (answering) parts[0].html += std::exchange(remarks.html, "");
       parts.back().html += html_table(std::get<Table>(piece));
     }
   }
+  if (results.figures.empty()) parts[0].html += std::exchange(remarks.html, "");
+  const bool few = parts.size() <= 2;  // what is short stays open: folding is for pages that are long
+  if (!remarks.html.empty()) parts.insert(parts.begin() + 1, std::move(remarks));
   std::string body = parts[0].html;
   constexpr std::size_t shown = 2;  // figures; the others are folded
   const std::string models = models_html(results, folder);
   const std::vector<std::string> figures = figures_html(results, folder, models.size());
   if (!figures.empty() || !models.empty()) body += "<h2>Figures</h2>\n" + models;
   for (std::size_t i = 0; i < std::min(shown, figures.size()); ++i) body += figures[i];
-  // What is short stays open: folding is for pages that are long.
-  const bool few = parts.size() <= 2;
   for (std::size_t i = 1; i < parts.size(); ++i)
     body += folded(parts[i].heading, parts[i].html, parts[i].open || few);
   if (figures.size() > shown) {

@@ -65,4 +65,7 @@ Ticks logarithmic_ticks(char name, const AxisRange& range, double length);
 /// @param name "x", "y" or "y2"
 Ticks named_ticks(const std::string& name, const std::vector<std::string>& names);
 
+/// A word as a shell takes it: in quotes where it holds more than letters, digits and the signs of paths.
+std::string shell_word(const std::string& word);
+
 }  // namespace beamid::experiments

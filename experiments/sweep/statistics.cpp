@@ -1,6 +1,10 @@
 #include "experiments/sweep/statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
 
 namespace beamid::experiments {
 namespace {
@@ -112,6 +116,34 @@ std::vector<PointStatistics> statistics(const SweepPlan& plan, const std::vector
     add_point(point, here, all);
   }
   return all;
+}
+
+std::vector<std::vector<std::string>> run_table(const SweepPlan& plan, std::vector<const SweepRow*> runs,
+                                                const std::string& unit, std::size_t most) {
+  const auto size = [](const SweepRow* row) {
+    return std::isfinite(row->error) ? std::abs(row->error) : std::numeric_limits<double>::infinity();
+  };
+  std::stable_sort(runs.begin(), runs.end(),
+                   [&](const SweepRow* a, const SweepRow* b) { return size(a) > size(b); });
+  runs.resize(std::min(runs.size(), most));
+  std::vector<std::vector<std::string>> table{{"case", "seed"}};
+  for (const VariedKey& key : plan.varied)
+    if (key.is_drawn()) table[0].push_back(key.key);
+  for (const std::string& head :
+       {std::string("status"), unit.empty() ? "estimate" : "estimate [" + unit + "]",
+        std::string("95 % from"), std::string("to"), std::string("error [%]")})
+    table[0].push_back(head);
+  const auto text = [](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; };
+  for (const SweepRow* row : runs) {
+    std::vector<std::string>& cells =
+        table.emplace_back(std::vector{std::to_string(row->number), std::to_string(row->seed)});
+    for (std::size_t j = 0; j < plan.varied.size(); ++j)
+      if (plan.varied[j].is_drawn()) cells.push_back(row->values[j]);
+    const double percent = 100.0 * row->error / std::abs(row->truth);
+    cells.insert(cells.end(), {row->status, text(row->estimate), text(row->lower), text(row->upper),
+                               std::isfinite(percent) ? fmt::format("{:+.3g}", percent) : "-"});
+  }
+  return table;
 }
 
 }  // namespace beamid::experiments

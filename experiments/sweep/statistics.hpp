@@ -37,4 +37,9 @@ struct PointStatistics {
 /// @param rows sorted by case
 std::vector<PointStatistics> statistics(const SweepPlan& plan, const std::vector<SweepRow>& rows);
 
+/// Runs as a table of text, the first row its head: those without an estimate first, then by falling error.
+/// @param unit of the estimates; @param most runs at most
+std::vector<std::vector<std::string>> run_table(const SweepPlan& plan, std::vector<const SweepRow*> runs,
+                                                const std::string& unit, std::size_t most);
+
 }  // namespace beamid::experiments

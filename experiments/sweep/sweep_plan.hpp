@@ -19,6 +19,8 @@ struct VariedKey {
   std::vector<filters::OptionValue> values;  ///< of a grid
   double first = 0.0, second = 0.0;          ///< from and to, or mean and deviation, of a law
   std::string text;                          ///< as the user wrote it
+
+  bool is_drawn() const { return law != Law::grid; }
 };
 
 /// Grid points x samples x seeds. Cases are numbered from 0: the last seed fastest, the first key slowest.

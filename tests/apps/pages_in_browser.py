@@ -449,6 +449,136 @@ def check_motion(browser, folder):
     check(browser.value(picture) != still, "two fingers come nearer")
 
 
+def answer_at(browser, canvas, x, y, x_log=False, y_log=False):
+    """Clicks at a point of a panel's axes. @return what the page then shows as text, and its cells"""
+    left, top, _, _ = place(browser, canvas)
+    box, across, up = browser.value(f"['box', 'x', 'y'].map(k => {canvas}.dataset[k].split(' ').map(Number))")
+
+    def part(value, ends, log):
+        value, low, high = (math.log(one) if log else one for one in (value, *ends))
+        return (value - low) / (high - low)
+
+    at = {"x": left + box[0] + box[2] * part(x, across, x_log), "y": top + box[1] + box[3] * (1 - part(y, up, y_log)), "button": "left", "clickCount": 1}
+    browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=at["x"], y=at["y"])
+    browser.call("Input.dispatchMouseEvent", type="mousePressed", **at)
+    browser.call("Input.dispatchMouseEvent", type="mouseReleased", **at)
+    browser.settle()
+    return answer(browser)
+
+
+def answer(browser):
+    """Of the first figure: the text of what was chosen, and the cells of its table by rows."""
+    found = "document.querySelector('figure.plot.alive .answer')"
+    text = browser.value(f"{found}?.innerText || ''")
+    rows = browser.value(f"[...({found}?.querySelectorAll('tr') || [])].map(r => [...r.cells].map(c => c.textContent))")
+    return text, rows
+
+
+def press(browser, key, canvas=FIRST):
+    browser.value(f"{canvas}.dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))")
+    browser.settle()
+
+
+def check_poles(browser, beamid, work):
+    """A click on a pole shows its numbers and shape. Oracle: the mode of results.json that is stable at that order."""
+    hostile = "<img src=x onerror=document.title='taken'>"
+    sensors = "".join(f"[[sensors]]\nquantity = 'acceleration'\nposition_m = {at}\nname = {json.dumps(name)}\nnoise_m_per_s2 = 0.01\n"
+                      for at, name in ((0.4, "low"), (0.8, "middle"), (1.1, "tip")))
+    (work / "poles.toml").write_text("[beam]\nlength_m = 1.1\nwidth_m = 0.06\nheight_m = 0.006\nyoungs_modulus_pa = 2.12e11\nmass_kg = 3.055\n"
+                                     f"[damping]\nratio = 0.01\n{sensors}[simulation]\nduration_s = 5\nsampling_rate_hz = 200\n", encoding="utf-8")
+    for words in (["simulate", "--config", "poles.toml", "--out", "poles_record"], ["modal", "poles.csv", "--out", "poles"]):
+        subprocess.run([beamid, *words, "--no-progress"], cwd=work, check=False, stdout=subprocess.DEVNULL)
+        head, *readings = (work / "poles_record" / "record.csv").read_text(encoding="utf-8").splitlines()
+        head = head.replace("acceleration_low_m_per_s2", f'"{hostile} [m/s2]"')
+        (work / "poles.csv").write_text("\n".join([head, *readings]) + "\n", encoding="utf-8")
+    results = json.loads((work / "poles" / "results.json").read_text())
+    mode = results["records"][0]["modes"][1]  # the first pole of a curve is one of the first mode
+    browser.open(work / "poles" / "report.html")
+    text, rows = answer_at(browser, FIRST, mode["frequency_hz"], mode["stable_orders"][-1])
+    numbers = {row[0]: float(row[1].split()[0]) for row in rows}
+    close = abs(numbers.get("frequency", 0) / mode["frequency_hz"] - 1) < 0.01 and abs(numbers.get("damping ratio", 0) / mode["damping_ratio"] / 100 - 1) < 0.2
+    check(close and f"model order {mode['stable_orders'][-1]}: stable" in text, f"a pole shows frequency and damping ratio: {text!r}")
+    sketch = "document.querySelector('canvas.sketch')"
+    label = browser.value(f"{sketch}?.getAttribute('aria-label') || ''")
+    amplitudes = [one["amplitude"] for one in mode["shape"]]
+    shown = [float(one) for one in re.findall(r" (-?[0-9.]+(?:e-?[0-9]+)?) at ", label)]
+    wanted = [one / max(amplitudes) for one in amplitudes]
+    same = len(shown) == 3 and all(abs(a - b) < 0.03 for a, b in zip(shown, wanted))
+    check(same and hostile in label, f"and its mode shape, {shown}, in results.json {wanted}")
+    place(browser, sketch)
+    first = browser.value(f"{sketch}.toDataURL()")
+    browser.value("new Promise(done => setTimeout(() => done(1), 400))")
+    check(browser.value(f"{sketch}.toDataURL()") != first, "which swings")
+    browser.value("[...document.querySelectorAll('.answer button')].find(b => b.textContent === 'Pause').click()")
+    browser.settle()
+    still = browser.value(f"{sketch}.toDataURL()")
+    browser.value("new Promise(done => setTimeout(() => done(1), 200))")
+    check(browser.value(f"{sketch}.toDataURL()") == still, "and stops")
+    press(browser, ",")
+    before = answer(browser)
+    check(before[1] != rows and len(before[1]) >= 2, f"a comma shows the pole before: {before[0]!r}")
+    press(browser, "Escape")
+    check(answer(browser)[0] == "", "Escape closes it")
+    press(browser, "Enter")
+    check("damping ratio" in answer(browser)[0], "Enter shows the pole nearest to the reading")
+    check(browser.problems() == [] and browser.value("document.title") != "taken", f"and no name is run {browser.problems()[:2]}")
+
+
+def check_sets(browser, folder):
+    """Twins: a click on a set shows its parameters, and its mode swings. Oracle: results.json."""
+    results = json.loads((folder / "results.json").read_text())
+    browser.open(folder / "report.html")
+    number = 1
+    parameters = results["sets"][number]["parameters"]
+    described = {one["name"]: one["described"] for one in results["parameters"]}
+    shift = 0.5 * ((number + 0.5) / len([one for one in results["sets"] if one["fits_as_well"]][:6]) - 0.5)
+    first = next(iter(parameters))
+    text, rows = answer_at(browser, FIRST, parameters[first] / described[first], 1 + shift)
+    shown = {row[0]: float(row[1]) for row in rows[1:]}
+    same = shown.keys() == parameters.keys() and all(abs(shown[name] / parameters[name] - 1) < 1e-4 for name in shown)
+    check(same and text.startswith(f"set {number + 1}"), f"a set shows its parameters: {text[:80]!r}")
+    caption = browser.value("document.querySelector('.motion .reading').textContent")
+    check(f"of set {number + 1}," in caption and "dashed: mode 1 as described" in caption, f"and its mode swings: {caption}")
+
+
+def check_update(browser, folder):
+    """Shapes before and after an update swing together. Oracle: results.json."""
+    modes = json.loads((folder / "results.json").read_text())["modes"]
+    browser.open(folder / "report.html")
+    canvas = "document.querySelector('canvas.swing')"
+    place(browser, canvas)
+    browser.value("new Promise(done => setTimeout(() => done(1), 200))")
+    first = browser.value(f"{canvas}.toDataURL()")
+    browser.value("new Promise(done => setTimeout(() => done(1), 400))")
+    check(browser.value(f"{canvas}.toDataURL()") != first, "update: shapes swing")
+    caption = browser.value("document.querySelector('.motion .reading').textContent")
+    shown = [float(one) for one in re.findall(r"([0-9.]+) Hz", caption)]
+    wanted = [modes[0]["updated_hz"], modes[0]["described_hz"]]
+    check(len(shown) == 2 and all(abs(a / b - 1) < 1e-4 for a, b in zip(shown, wanted)), f"update: after and before: {caption}, in results.json {wanted}")
+    places = browser.value("['.answer', 'h1', 'table', '.motion'].map(s => document.querySelector(s)?.getBoundingClientRect().top ?? -1)")
+    check(places[1] < places[2] < places[3], f"update: title, table of answers, shapes {places}")
+
+
+def check_cells(browser, beamid, work):
+    """A sweep: a click on a point shows its runs; the command that it shows finds the same estimates."""
+    folder = work / "tutorials" / "13_sweeps"
+    lines = list(csv.DictReader(open(work / "sweep" / "cases.csv", encoding="utf-8")))
+    runs = [line for line in lines if line["parameter"] == "stiffness" and float(line["damping.ratio"]) == 0.01]
+    errors = [float(line["error"]) / float(line["truth"]) for line in runs]
+    rms = 100 * math.sqrt(sum(one * one for one in errors) / len(errors))
+    browser.open(work / "sweep" / "report.html")
+    text, rows = answer_at(browser, FIRST, 0.01, rms, x_log=True, y_log=True)
+    shown = {row[0]: float(row[3]) for row in rows[1:]}
+    same = len(shown) == len(runs) and all(abs(shown[line["case"]] / float(line["estimate"]) - 1) < 1e-5 for line in runs)
+    check(same and text.startswith("stiffness: ratio = 0.01"), f"a point of a sweep shows its runs: {text[:120]!r}")
+    command = browser.value("document.querySelector('.answer pre')?.textContent || ''").split()
+    check(command[:2] == ["beamid", "sweep"], f"and what repeats them: {' '.join(command)}")
+    subprocess.run([beamid, *command[1:], "--out", work / "cell", "--no-progress"], cwd=folder, check=False, stdout=subprocess.DEVNULL)
+    cell = work / "cell" / "cases.csv"
+    again = [line["estimate"] for line in csv.DictReader(open(cell, encoding="utf-8")) if line["parameter"] == "stiffness"] if cell.exists() else []
+    check(again == [line["estimate"] for line in runs], f"which finds the same estimates {again[:2]}")
+
+
 def check_long(browser, beamid, work):
     """Of 100 000 samples the page has each: one that stands alone is read at its own time after zooming in."""
     spike, at = 7.25, 87654
@@ -557,9 +687,14 @@ def main():
             "inspect": ("02_identify_a_record", "inspect tip_acceleration.csv"),
             "reduce": ("02_identify_a_record", "reduce --config cantilever.toml --reduction guyan"),
         }
+        answering = {
+            "twins": ("16_six_buildings", "twins frequencies.toml --config frame.toml --model-error 0.05"),
+            "update": ("16_six_buildings", "update shapes.toml --config frame.toml"),
+            "sweep": ("13_sweeps", "sweep --config rig.toml --seeds 6"),
+        }
         browser = Browser(work / "profile")
         try:
-            for name, (tutorial, command) in runs.items():
+            for name, (tutorial, command) in (runs | answering).items():
                 results = subprocess.run([beamid, *command.split(), "--out", work / name, "--no-progress"], cwd=work / "tutorials" / tutorial,
                                          capture_output=True, text=True)
                 if not (work / name / "report.html").exists():
@@ -573,6 +708,10 @@ def main():
             check_peak(browser, work / "identify")
             check_copies(browser, work / "identify")
             check_swing(browser, work / "modes")
+            check_poles(browser, beamid, work)
+            check_sets(browser, work / "twins")
+            check_update(browser, work / "update")
+            check_cells(browser, beamid, work)
             check_motion(browser, work / "simulate")
             for name in ("identify", "modes", "compare"):
                 check_paper(browser, work / name, name)

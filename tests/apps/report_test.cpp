@@ -123,6 +123,26 @@ TEST_F(Report, IsPrintedToPdf) {
   EXPECT_EQ(place_.run("report one --pdf one.pdf").code, 2);  // it exists
 }
 
+// Oracle: the head of a PNG file: its size stands behind the first 16 bytes.
+TEST_F(Report, IsAPictureOfItsBeginning) {
+  if (std::system("command -v chromium > /dev/null || command -v google-chrome > /dev/null") != 0)
+    GTEST_SKIP() << "neither chromium nor google-chrome is installed";
+  place_.run("identify --config cantilever.toml --out one");
+  const Outcome outcome = place_.run("report one --png one.png");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "Printed to one.png\n");
+  const std::string png = contents(place_.folder() / "one.png");
+  ASSERT_GT(png.size(), 30000u);
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  const auto number = [&](std::size_t at) {
+    return static_cast<unsigned char>(png[at + 2]) * 256 + static_cast<unsigned char>(png[at + 3]);
+  };
+  EXPECT_EQ(number(16), 960);
+  EXPECT_EQ(number(20), 928);
+  for (const std::string& file : place_.files()) EXPECT_EQ(file.find("partial"), std::string::npos) << file;
+  EXPECT_EQ(place_.run("report one --png one.jpg").code, 2);
+}
+
 TEST_F(Report, SaysWhereNothingPrints) {
   place_.run("identify --config cantilever.toml --out one");
   const Outcome outcome = place_.run("report one --pdf one.pdf", "PATH=/nowhere");

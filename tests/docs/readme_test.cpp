@@ -18,6 +18,15 @@ TEST(Readme, HasAtMost150LinesAndItsPictureOnTheFirstScreen) {
   EXPECT_LE(picture - lines.begin(), 20);
 }
 
+// A page as `beamid report --png` writes it; the size stands in the head of a PNG file.
+TEST(Readme, HasAPictureOfAPageThatIsSmall) {
+  const std::string picture = contents(source("docs/images/overview.png"));
+  ASSERT_EQ(picture.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_LE(picture.size(), 150'000u);
+  EXPECT_EQ(picture.substr(16, 8), std::string("\0\0\x03\xc0\0\0\x03\xa0", 8));  // 960 x 928
+  EXPECT_THAT(readme, HasSubstr("beamid report tower --png overview.png"));
+}
+
 TEST(Readme, BeginsWithTheTwoCommandsOfSetUp) {
   EXPECT_LT(readme.find("./bootstrap paper "), readme.find("./bootstrap test "));
   EXPECT_LT(readme.find("./bootstrap test "), 300u);

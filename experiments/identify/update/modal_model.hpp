@@ -64,6 +64,9 @@ class ModalModel final : public ModesOfParameters {
   bool dense() const override;
   PredictedModes at(const Eigen::VectorXd& values, bool slopes) const override;
 
+  /// The same of all coordinates; of a small system all modes. @throws as at()
+  FoundModes found(const Eigen::VectorXd& values, bool slopes) const;
+
   /// M and K at p, dense. @throws std::invalid_argument when the system is not small.
   std::pair<Eigen::MatrixXd, Eigen::MatrixXd> matrices(const Eigen::VectorXd& values) const;
 
@@ -76,8 +79,6 @@ class ModalModel final : public ModesOfParameters {
   fem::ParametricSystem described_;
   std::vector<MatrixSlope> slopes_;       // q
   Eigen::MatrixXd mass_0_, stiffness_0_;  // at p = 0; dense only
-
-  FoundModes found(const Eigen::VectorXd& values, bool slopes) const;
 };
 
 }  // namespace beamid::experiments

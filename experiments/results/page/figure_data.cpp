@@ -162,6 +162,45 @@ struct PageFigure {
   std::string bytes;
 };
 
+Json detail_json(const PointDetail& detail) {
+  Json json{{"title", clean_text(detail.title)}, {"rows", Json::array()}};
+  for (const std::vector<std::string>& row : detail.rows) {
+    Json cells = Json::array();
+    for (const std::string& cell : row) cells.push_back(clean_text(cell));
+    json["rows"].push_back(std::move(cells));
+  }
+  for (const auto& [key, text] : {std::pair("note", &detail.note), std::pair("command", &detail.command),
+                                  std::pair("mode", &detail.mode)})
+    if (!text->empty()) json[key] = clean_text(*text);
+  return json;
+}
+
+/// Of many poles by many channels the shapes would fill the page: curves beyond are without.
+constexpr Index most_shape_values = 20'000;
+
+/// What a click shows. Equal details of several curves stand once, in `all`.
+void add_answers(const Curve& curve, PageColumns& columns, Index& shape_values, Json& all, Json& json) {
+  for (const PointFact& fact : curve.facts)
+    json["facts"].push_back(
+        {{"label", clean_text(typeset(fact.label))}, {"values", columns.add(fact.values)}});
+  const Index size = curve.shapes.size();
+  if (size > 0 && shape_values + size <= most_shape_values) {
+    shape_values += size;
+    const Eigen::MatrixXcd scaled =
+        curve.shapes *
+        curve.shapes.cwiseAbs().colwise().maxCoeff().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd real = scaled.real(), imaginary = scaled.imag();
+    json["shapes"] = {columns.add(real.reshaped(), Coding::even),
+                      columns.add(imaginary.reshaped(), Coding::even)};
+  }
+  for (const PointDetail& detail : curve.details) {
+    Json one = detail_json(detail);
+    const auto found = std::find(all.begin(), all.end(), one);
+    json["details"].push_back(found - all.begin());
+    if (found == all.end()) all.push_back(std::move(one));
+  }
+}
+
 /// Which points of a line a page holds: an envelope of the whole, and of what the panel shows at first all,
 /// or where that is much an envelope of its own.
 std::vector<Index> kept_points(const Panel& panel, const Curve& curve, Index limit) {
@@ -226,7 +265,8 @@ std::string detail_text(const Detail& detail, Index longest, Index held) {
 PageFigure page_figure(const Figure& figure, const Detail& detail) {
   PageFigure page;
   PageColumns columns;
-  Index longest = 0, held = 0;
+  Index longest = 0, held = 0, shape_values = 0;
+  Json details = Json::array();
   const int height = picture_height(figure);
   const auto colours = colours_of(figure);
   const auto places = panel_places(figure, height);
@@ -241,6 +281,12 @@ PageFigure page_figure(const Figure& figure, const Detail& detail) {
               {"y", axis_json(panel.y_axis, drawn_y_axis(panel, place.bottom - place.top))},
               {"curves", Json::array()}};
     for (const std::string& remark : panel.remarks) json["remarks"].push_back(clean_text(remark));
+    for (const std::string& name : panel.channels) json["channels"].push_back(clean_text(name));
+    for (const double at : panel.places) json["places"].push_back(at);
+    // The last curves lie in front, stable poles among them: their shapes are kept first.
+    std::vector<Json> answers(panel.curves.size(), Json::object());
+    for (std::size_t k = panel.curves.size(); k-- > 0;)
+      add_answers(panel.curves[k], columns, shape_values, details, answers[k]);
     int filled = 0, open = 0;
     for (std::size_t k = 0; k < panel.curves.size(); ++k) {
       const Curve& curve = panel.curves[k];
@@ -250,10 +296,12 @@ PageFigure page_figure(const Figure& figure, const Detail& detail) {
       drawn["mark"] = curve.style == CurveStyle::points || curve.style == CurveStyle::intervals ? filled++
                       : curve.style == CurveStyle::open_points                                  ? open++
                                                                                                 : 0;
+      drawn.update(answers[k]);
       json["curves"].push_back(std::move(drawn));
     }
     page.json["panels"].push_back(std::move(json));
   }
+  if (!details.empty()) page.json["details"] = std::move(details);
   if (longest > 0) page.json["thinned"] = detail_text(detail, longest, held);
   page.bytes = columns.bytes();
   return page;

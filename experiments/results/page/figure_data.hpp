@@ -24,6 +24,10 @@ inline constexpr std::size_t most_page_bytes = 1'000'000;
 /// size}, where `at` counts bytes: 8 bytes a value up to 1000 values, 4 beyond. What was left out of a grid
 /// has "counts" too, 1 or 2 bytes: so many steps after the value before.
 ///
+/// What a click on a point shows stands beside its curve: "facts" (label, column), "shapes" (columns of real
+/// and imaginary parts, largest 1, the channels of a point together) and "details", numbers of the figure's
+/// "details" (title, rows, note, command, mode).
+///
 /// Where the whole takes more than `most` bytes, columns of lines have codes of 2 bytes: the value is low +
 /// step code, or with "log" its exponential; 65535 is no number. Where that is too much, lines are thinned to
 /// one limit that fits (envelope() of figure.hpp). "thinned" states both in words.

@@ -50,6 +50,7 @@ function number(value) {
 }
 const unit = (label) => (/\[([^\]]*)\]\s*$/.exec(plain(label)) || ['', ''])[1];
 const named = (label) => plain(label).replace(/\s*\[[^\]]*\]\s*$/, '');
+Object.assign(beamid, {font, theme, number, unit, named});
 
 // What a picture is drawn with: a canvas or the text of an SVG.
 class CanvasPen {
@@ -76,6 +77,7 @@ class CanvasPen {
 }
 const ruler = document.createElement('canvas').getContext('2d');
 const textWidth = (text, size = 13) => { ruler.font = `${size}px ${font}`; return ruler.measureText(plain(text)).width; };
+beamid.textWidth = textWidth;
 const fitted = (text, room, size) => Math.max(8, Math.min(size, size * room / Math.max(1, textWidth(text, size))));
 const escapes = {'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'};
 const escaped = (text) => text.replace(/[&<>"]/g, (c) => escapes[c]);
@@ -186,11 +188,15 @@ class Panel {
     for (const curve of this.curves) {
       for (const key of ['x', 'y', 'lower', 'upper']) curve[key] = column(curve[key], figure.data);
       curve.sorted = ascending(curve.x);
+      for (const fact of curve.facts || []) fact.values = column(fact.values, figure.data);
+      if (curve.shapes) curve.shapes = curve.shapes.map((part) => column(part, figure.data));
     }
+    this.answers = this.curves.some((curve) => curve.facts || curve.details);
     this.home = {x: this.x.range, y: this.y.range};
     this.view = {x: [...this.x.range], y: [...this.y.range]};
     this.canvas = make(cell, 'canvas', {tabindex: 0, role: 'img', 'aria-label': (plain(this.title) || figure.alt) +
-      '. Arrow keys move the reading, plus and minus zoom, 0 resets.'});
+      '. Arrow keys move the reading, plus and minus zoom, 0 resets.' +
+      (this.answers ? ' Enter shows what stands behind the nearest point, comma and point the one before and after.' : '')});
     this.reading = make(cell, 'div', {class: 'reading', role: 'status'});
     this.reading.hidden = true;
     this.listen();
@@ -226,12 +232,17 @@ class Panel {
     this.canvas.width = w * scale; this.canvas.height = h * scale;
     const context = this.canvas.getContext('2d');
     context.scale(scale, scale);
-    const pen = new CanvasPen(context);
+    const pen = new CanvasPen(context), colours = theme();
     this.box = this.render(pen, 0, 0, w, h);
     this.canvas.dataset.box = [this.box.l, this.box.t, this.box.w, this.box.h].join(' ');
     this.canvas.dataset.x = this.view.x.join(' ');
     this.canvas.dataset.y = this.view.y.join(' ');
     if (this.marks) for (const [x, y, colour] of this.marks) pen.path([circle(x, y, 5)], colour, 2);
+    if (this.picked) {
+      const {curve, i} = this.picked, at = [this.box.px(curve.x[i]), this.box.py(curve.y[i])];
+      pen.path([circle(...at, 8)], colours.ground, 5);
+      pen.path([circle(...at, 8)], colours.ink, 2.5);
+    }
     if (this.drag && this.drag.box) {
       const {x, y, w: bw, h: bh} = this.drag.box;
       pen.path([[x, y, x + bw, y, x + bw, y + bh, x, y + bh, x, y]], theme().blue, 1, [4, 3]);
@@ -393,6 +404,37 @@ class Panel {
     this.pointer = [mx, my];
     this.later();
   }
+  // The nearest point with an answer within so many pixels.
+  point(mx, my, within) {
+    const box = this.box;
+    let best = null, distance = within;
+    for (const curve of box && this.answers ? this.curves : []) {
+      if (!(curve.facts || curve.details) || (curve.label && this.figure.off.has(curve.label))) continue;
+      for (let i = 0; i < curve.x.length; ++i) {
+        let a = box.px(curve.x[i]);
+        const b = box.py(curve.y[i]);
+        if (!(a >= box.l - 1 && a <= box.l + box.w + 1 && b >= box.t - 1 && b <= box.t + box.h + 1)) continue;
+        if (curve.style === 'intervals') a = Math.max(Math.min(mx, box.px(curve.upper[i])), box.px(curve.lower[i])) || a;
+        const away = Math.hypot(a - mx, b - my);
+        if (away <= distance) { distance = away; best = {curve, i}; }
+      }
+    }
+    return best;
+  }
+  choose(found) {
+    if (!found) return;
+    for (const panel of this.figure.panels) if (panel.picked) { panel.picked = null; panel.later(); }
+    this.picked = found;
+    beamid.answer(this, found, () => this.shut());
+    this.later();
+  }
+  shut() {
+    if (!this.picked) return;
+    this.picked = null;
+    this.figure.answers.textContent = '';
+    this.canvas.focus({preventScroll: true});
+    this.later();
+  }
   quiet() { this.reading.hidden = true; this.marks = null; this.later(); }
   zoom(factor, mx, my, both) {
     const box = this.box, zoomed = (axis, range, place) => [value(axis, range, place * (1 - factor)), value(axis, range, place + (1 - place) * factor)];
@@ -412,6 +454,7 @@ class Panel {
     this.canvas.addEventListener('pointerdown', (event) => {
       const at = place(event);
       fingers.set(event.pointerId, at);
+      this.tap = fingers.size === 1 ? at : null;
       if (event.pointerType === 'touch') { this.read(...at); return; }
       if (event.button !== 0) return;
       this.canvas.setPointerCapture(event.pointerId);
@@ -435,13 +478,22 @@ class Panel {
           this.drag.box = {x: Math.min(x, at[0]), w: Math.abs(at[0] - x), y: flat ? box.t : Math.min(y, at[1]), h: flat ? box.h : Math.abs(at[1] - y), flat};
           this.later();
         }
-      } else this.read(...at);
+      } else {
+        this.read(...at);
+        this.canvas.style.cursor = this.point(...at, 14) ? 'pointer' : '';
+      }
     });
     const end = (event) => {
       fingers.delete(event.pointerId);
       const drag = this.drag;
       this.drag = null;
-      if (!drag || !drag.box || drag.box.w < 5) { this.later(); return; }
+      if (!drag || !drag.box || drag.box.w < 5) {
+        const at = place(event), touched = event.pointerType === 'touch';
+        if (event.type === 'pointerup' && this.tap && Math.hypot(at[0] - this.tap[0], at[1] - this.tap[1]) < (touched ? 10 : 5))
+          this.choose(this.point(...at, touched ? 24 : 14));
+        this.later();
+        return;
+      }
       const box = this.box, b = drag.box, at = (x) => value(this.x, this.view.x, (x - box.l) / box.w);
       if (!b.flat) {
         const up = (y) => value(this.y, this.view.y, 1 - (y - box.t) / box.h);
@@ -466,7 +518,11 @@ class Panel {
       else if (event.key === '+' || event.key === '=') this.zoom(0.7, ...middle, false);
       else if (event.key === '-') this.zoom(1 / 0.7, ...middle, false);
       else if (event.key === '0') this.reset();
-      else if (event.key === 'Escape') this.quiet();
+      else if (event.key === 'Enter' && this.answers) this.choose(this.point(...middle, Infinity));
+      else if ((event.key === ',' || event.key === '.') && this.picked) {
+        const {curve, i} = this.picked, next = i + (event.key === ',' ? -1 : 1);
+        if (next >= 0 && next < curve.x.length) this.choose({curve, i: next});
+      } else if (event.key === 'Escape') { this.quiet(); this.shut(); }
       else return;
       event.preventDefault();
     });
@@ -524,15 +580,18 @@ class Figure {
     button('PNG', 'save what is shown', () => this.png());
     button('SVG', 'save what is shown', () => this.svg());
     button('CSV', 'save the values between the ends of the horizontal axes', () => this.csv());
-    make(bar, 'span', {class: 'help'}, 'drag: zoom · shift-drag: pan · Ctrl + wheel: zoom · double click: reset');
+    const clicks = spec.panels.some(({curves}) => curves.some((curve) => curve.facts || curve.details));
+    make(bar, 'span', {class: 'help'}, `${clicks ? 'click a point: its values · ' : ''}drag: zoom · shift-drag: pan · Ctrl + wheel: zoom · double click: reset`);
     const grid = make(live, 'div', {class: 'grid'});
     grid.style.setProperty('--columns', spec.columns);
     this.columns = spec.columns;
+    this.details = spec.details || [];
     this.panels = spec.panels.map((panel) => new Panel(panel, this, make(grid, 'div', {class: 'cell'})));
     for (const panel of this.panels) {
       panel.height = spec.row_height;
       panel.canvas.style.height = `${spec.row_height}px`;
     }
+    this.answers = make(live, 'div', {'aria-live': 'polite'});
     this.legend(make(live, 'div', {class: 'legend'}));
     if (spec.thinned) make(live, 'p', {class: 'note'}, spec.thinned);
     element.classList.add('alive');
@@ -622,7 +681,7 @@ for (const element of document.querySelectorAll('figure[data-figure]')) {
 }
 
 // Copies for the clipboard: commands and experiment files.
-for (const text of document.querySelectorAll('section pre')) {
+beamid.copy = (text) => {
   const button = document.createElement('button');
   button.type = 'button';
   button.className = 'copy';
@@ -638,6 +697,7 @@ for (const text of document.querySelectorAll('section pre')) {
     setTimeout(() => { button.textContent = 'Copy'; }, 2000);
   });
   text.before(button);
-}
+};
+document.querySelectorAll('section pre').forEach(beamid.copy);
 addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((part) => { part.open = true; }));
 })();

@@ -36,8 +36,10 @@ function frequency({time, weights}) {
 }
 const brief = (value) => String(Number(value.toPrecision(3)));
 
+beamid.swings = [];
 class Swing {
   constructor(element) {
+    this.section = element.closest('section');
     const data = bytes(element.dataset.model);
     this.model = model(data);
     this.mode = 0; this.nearness = 1; this.phase = 0;
@@ -53,7 +55,7 @@ class Swing {
     if (!motion) {
       this.choice = make(make(bar, 'label', {}, 'Mode '), 'select');
       this.model.modes.forEach((mode, i) => make(this.choice, 'option', {value: i}, mode.name));
-      this.choice.addEventListener('change', () => { this.mode = Number(this.choice.value); this.draw(); });
+      this.choice.addEventListener('change', () => this.choose(Number(this.choice.value)));
       this.beside = make(make(bar, 'label', {}, 'beside it '), 'select');
       make(this.beside, 'option', {value: ''}, 'none');
       this.model.modes.forEach((mode, i) => make(this.beside, 'option', {value: i}, mode.name));
@@ -92,8 +94,20 @@ class Swing {
     new ResizeObserver(() => this.draw()).observe(live);
     new IntersectionObserver((entries) => { this.seen = entries.some((entry) => entry.isIntersecting); this.start(); }).observe(this.canvas);
     beamid.dark.addEventListener('change', () => this.draw());
+    if (!motion) this.choose(0);
+    this.draw();
+    beamid.swings.push(this);
+  }
+  // A mode, and beside it what its file states, as the structure as described beside the updated one.
+  choose(index) {
+    this.mode = index;
+    this.choice.value = index;
+    const {beside} = this.model.modes[index];
+    if (beside !== undefined) this.beside.value = beside;
     this.draw();
   }
+  has(name) { return this.model.modes.some((mode) => mode.name === name); }
+  show(name) { this.choose(this.model.modes.findIndex((mode) => mode.name === name)); }
   bounds() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     for (const {points} of this.model.primitives) points.forEach((v, i) => { low[i % 3] = Math.min(low[i % 3], v); high[i % 3] = Math.max(high[i % 3], v); });
@@ -128,12 +142,14 @@ class Swing {
     const {motion} = this.model, mode = this.model.modes[this.mode], [yaw, pitch] = this.turn, a = this.amplitude * this.size / this.model.unit;
     const cy = Math.cos(yaw), sy = Math.sin(yaw), cp = Math.cos(pitch), sp = Math.sin(pitch);
     const need = [Math.abs(cy) * this.span[0] + Math.abs(sy) * this.span[2], Math.abs(cp) * this.span[1] + Math.abs(sp) * Math.max(this.span[0], this.span[2])];
-    const zoom = this.nearness * Math.min(0.9 * w / (need[0] + 0.2 * this.size), 0.9 * h / (need[1] + 0.3 * this.size));
+    // Room for what moves out of a structure that lies; one that stands moves sideways. Below is the scale of colours.
+    const across = Math.max(0.05 * this.size, 0.3 * this.size - 0.25 * need[1]);
+    const zoom = this.nearness * Math.min(0.9 * w / (need[0] + 0.2 * this.size), 0.9 * (h - 30) / (need[1] + across));
     // glTF: y upwards; the eye looks along -z.
     const seen = (x, y, z) => {
       const u = x - this.centre[0], v = y - this.centre[1], s = z - this.centre[2];
       const side = cy * u + sy * s, deep = -sy * u + cy * s;
-      return [w / 2 + zoom * side, h / 2 - zoom * (cp * v - sp * deep), sp * v + cp * deep];
+      return [w / 2 + zoom * side, h / 2 - 12 - zoom * (cp * v - sp * deep), sp * v + cp * deep];
     };
     const shares = motion ? this.weights() : this.shares(mode);
     const other = this.beside && this.beside.value !== '' ? this.shares(this.model.modes[Number(this.beside.value)]) : null;
@@ -155,19 +171,27 @@ class Swing {
         if (this.still) rest[i] = seen(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
       }
       if (kind === 1) {
-        c.lineCap = 'round';
-        if (this.still) {
+        // One path through segments that follow each other, or dashes would begin anew at each.
+        const trace = (at) => {
           c.beginPath();
-          for (let i = 0; i < indices.length; i += 2) { c.moveTo(...rest[indices[i]].slice(0, 2)); c.lineTo(...rest[indices[i + 1]].slice(0, 2)); }
+          for (let i = 0, last = [NaN, NaN]; i < indices.length; i += 2) {
+            const [x, y] = at(indices[i]);
+            if (!(Math.abs(x - last[0]) + Math.abs(y - last[1]) < 0.01)) c.moveTo(x, y);
+            last = at(indices[i + 1]);
+            c.lineTo(last[0], last[1]);
+          }
+        };
+        c.lineCap = 'butt';
+        if (this.still) {
+          trace((i) => rest[i]);
           c.strokeStyle = dark ? '#888' : '#999'; c.lineWidth = 1; c.setLineDash([4, 4]); c.stroke(); c.setLineDash([]);
         }
         if (other) {  // the lines of a second shape
           const place = (i) => seen(...[0, 1, 2].map((k) => points[3 * i + k] + a * other.reduce((sum, [target, share]) => sum + share * targets[target][3 * i + k], 0)));
-          c.beginPath();
-          for (let i = 0; i < indices.length; i += 2) { c.moveTo(...place(indices[i]).slice(0, 2)); c.lineTo(...place(indices[i + 1]).slice(0, 2)); }
+          trace(place);
           c.strokeStyle = dark ? '#ff8a4c' : '#d55e00'; c.lineWidth = 2; c.setLineDash([9, 5]); c.stroke(); c.setLineDash([]);
         }
-        c.lineWidth = 3;
+        c.lineWidth = 3; c.lineCap = 'round';
         for (let i = 0; i < indices.length; i += 2) {
           c.beginPath(); c.moveTo(...moved[indices[i]].slice(0, 2)); c.lineTo(...moved[indices[i + 1]].slice(0, 2));
           c.strokeStyle = shade(0.5 * (far[indices[i]] + far[indices[i + 1]])); c.stroke();

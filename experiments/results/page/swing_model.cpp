@@ -171,6 +171,7 @@ std::string written(const SwingModel& model, const MotionHistory* history) {
     GltfJson described{{"name", mode.name}, {"frequency_hz", mode.frequency_hz}, {"targets", {mode.real}}};
     if (mode.damping_ratio) described["damping_ratio"] = *mode.damping_ratio;
     if (mode.quadrature) described["targets"].push_back(*mode.quadrature);
+    if (mode.beside) described["beside"] = *mode.beside;
     mesh["extras"]["modes"].push_back(std::move(described));
     add_animation(mode, motions, times, file);
   }

@@ -24,6 +24,7 @@ struct SwingModel {
     std::optional<double> damping_ratio = {};
     int real = 0;                        ///< which motion is in phase
     std::optional<int> quadrature = {};  ///< which is a quarter of a period ahead; absent: the shape is real
+    std::optional<int> beside = {};      ///< the mode that swings beside it at first
   };
   std::vector<Part> parts;
   std::vector<Mode> modes;

@@ -31,6 +31,24 @@ VectorXd joint_spectrum(const Eigen::MatrixXd& samples, double interval, VectorX
   return squares.cwiseSqrt();
 }
 
+/// Where the channels stand in a sketch: at their positions along the beam, or one after the other.
+VectorXd sketched_places(const std::vector<Channel>& channels) {
+  const auto count = static_cast<Index>(channels.size());
+  VectorXd places = VectorXd::LinSpaced(count, 0.0, 1.0);
+  const bool stated = std::all_of(channels.begin(), channels.end(),
+                                  [](const Channel& channel) { return channel.position.has_value(); });
+  if (!stated) return places;
+  for (Index i = 0; i < count; ++i) places[i] = *channels[static_cast<std::size_t>(i)].position;
+  return places.maxCoeff() > places.minCoeff() ? places : VectorXd::LinSpaced(count, 0.0, 1.0);
+}
+
+/// Whether shapes of these channels can be drawn as one moving line.
+bool are_alike(const std::vector<Channel>& channels) {
+  return std::all_of(channels.begin(), channels.end(), [&](const Channel& channel) {
+    return channel.quantity == channels.front().quantity && channel.quantity != Quantity::strain;
+  });
+}
+
 Figure diagram(const RecordModes& found, const std::string& suffix) {
   Panel panel{found.name, {"frequency [Hz]"}, {"model order"}};
   const double top = found.search.orders.empty() ? 2 : found.search.orders.back().order + 1;
@@ -44,23 +62,10 @@ Figure diagram(const RecordModes& found, const std::string& suffix) {
   panel.across(found.band_hz.first, found.band_hz.second).up(0, top);
   for (const ModeEstimate& mode : found.modes)  // behind the poles that they are chosen from
     panel.upright(&mode == &found.modes.front() ? "mode" : "", mode.pole.frequency_hz(), Colour::vermillion);
-  const struct {
-    Stability stability;
-    const char* label;
-    CurveStyle style;
-    Colour colour;
-  } kinds[] = {{Stability::unstable, "not stable", CurveStyle::open_points, Colour::grey},
-               {Stability::frequency, "stable in frequency", CurveStyle::open_points, Colour::orange},
-               {Stability::full, "stable", CurveStyle::points, Colour::blue}};
-  for (const auto& kind : kinds) {
-    std::vector<double> x, y;
-    for (const DiagramPole& pole : found.stabilisation.poles) {
-      if (pole.stability != kind.stability) continue;
-      x.push_back(pole.pole.frequency_hz());
-      y.push_back(pole.order);
-    }
-    if (!x.empty()) panel.add(kind.style, kind.label, of(x), of(y), kind.colour);
-  }
+  add_channels(panel, found.record.channels);
+  add_poles(panel, found.stabilisation.poles, Stability::unstable, "not stable");
+  add_poles(panel, found.stabilisation.poles, Stability::frequency, "stable in frequency");
+  add_poles(panel, found.stabilisation.poles, Stability::full, "stable");
   Figure figure{"stabilisation" + suffix, {panel}, 1, 1, 900, 520};
   figure.caption =
       "Stabilisation diagram: poles by model order, the modes chosen, and behind them the spectrum "
@@ -119,27 +124,58 @@ Figure singular_values(const RecordModes& found, const std::string& suffix) {
   return figure;
 }
 
-/// Where the channels stand in a sketch: at their positions along the beam, or one after the other.
-VectorXd sketched_places(const std::vector<Channel>& channels) {
-  const auto count = static_cast<Index>(channels.size());
-  VectorXd places = VectorXd::LinSpaced(count, 0.0, 1.0);
-  const bool stated = std::all_of(channels.begin(), channels.end(),
-                                  [](const Channel& channel) { return channel.position.has_value(); });
-  if (!stated) return places;
-  for (Index i = 0; i < count; ++i) places[i] = *channels[static_cast<std::size_t>(i)].position;
-  return places.maxCoeff() > places.minCoeff() ? places : VectorXd::LinSpaced(count, 0.0, 1.0);
+}  // namespace
+
+void add_poles(Panel& panel, const std::vector<DiagramPole>& poles, Stability stability,
+               const std::string& label) {
+  std::vector<double> frequency, order, damping, frequency_deviation, damping_deviation;
+  std::vector<Eigen::VectorXcd> shapes;
+  for (const DiagramPole& one : poles) {
+    if (one.stability != stability) continue;
+    frequency.push_back(one.pole.frequency_hz());
+    order.push_back(one.order);
+    damping.push_back(100.0 * one.pole.damping_ratio());
+    frequency_deviation.push_back(one.pole.frequency_deviation_hz);
+    damping_deviation.push_back(100.0 * one.pole.damping_ratio_deviation);
+    shapes.push_back(one.pole.shape);
+    Index largest = 0;  // which is turned to be real, as of the modes
+    if (one.pole.shape.size() > 0 && one.pole.shape.cwiseAbs().maxCoeff(&largest) > 0.0)
+      shapes.back() /= one.pole.shape[largest];
+  }
+  if (frequency.empty()) return;
+  const bool full = stability == Stability::full;
+  panel.add(full ? CurveStyle::points : CurveStyle::open_points, label, of(frequency), of(order),
+            full                                ? Colour::blue
+            : stability == Stability::frequency ? Colour::orange
+                                                : Colour::grey);
+  Curve& curve = panel.curves.back();
+  curve.facts.push_back({"damping ratio [%]", of(damping)});
+  const auto is_known = [](double deviation) { return deviation > 0.0 && std::isfinite(deviation); };
+  if (std::any_of(frequency_deviation.begin(), frequency_deviation.end(), is_known)) {
+    curve.facts.push_back({"standard deviation of the frequency [Hz]", of(frequency_deviation)});
+    curve.facts.push_back({"standard deviation of the damping ratio [%]", of(damping_deviation)});
+  }
+  const auto channels = static_cast<Index>(panel.channels.size());
+  if (channels < 2 || std::any_of(shapes.begin(), shapes.end(), [&](const Eigen::VectorXcd& shape) {
+        return shape.size() != channels || !shape.allFinite();
+      }))
+    return;
+  curve.shapes.resize(channels, static_cast<Index>(shapes.size()));
+  for (std::size_t k = 0; k < shapes.size(); ++k) curve.shapes.col(static_cast<Index>(k)) = shapes[k];
 }
 
-}  // namespace
+void add_channels(Panel& panel, const std::vector<Channel>& channels) {
+  for (const Channel& channel : channels)
+    panel.channels.push_back(channel.name.empty() ? to_string(channel.quantity) : channel.name);
+  if (channels.size() < 2 || !are_alike(channels)) return;
+  const VectorXd places = sketched_places(channels);
+  panel.places = (places.array() - places.minCoeff()) / (places.maxCoeff() - places.minCoeff());
+}
 
 std::optional<NodalModes> measured_shapes(const RecordModes& found) {
   const std::vector<Channel>& channels = found.record.channels;
   const auto count = static_cast<Index>(channels.size());
-  const auto alike = [&](const Channel& channel) {
-    return channel.quantity == channels.front().quantity && channel.quantity != Quantity::strain;
-  };
-  if (count < 2 || found.modes.empty() || !std::all_of(channels.begin(), channels.end(), alike))
-    return std::nullopt;
+  if (count < 2 || found.modes.empty() || !are_alike(channels)) return std::nullopt;
   NodalModes modes{found.name, Eigen::Matrix3Xd::Zero(3, count), {}, {}, true};
   modes.places.row(0) = sketched_places(channels).transpose();
   for (const ModeEstimate& mode : found.modes) {

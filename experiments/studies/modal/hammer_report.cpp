@@ -168,23 +168,18 @@ std::vector<Figure> hammer_figures(const HammerStudy& study) {
     }
   };
   for (int kind = 0; kind < figure.rows; ++kind) row(kind);
-  std::vector<double> x[2], y[2];
-  for (const DiagramPole& pole : study.stabilisation.poles) {
-    const int stable = pole.stability == Stability::full;
-    x[stable].push_back(pole.pole.frequency_hz());
-    y[stable].push_back(pole.order);
-  }
   Panel diagram{"", {"frequency [Hz]"}, {"model order"}};
-  for (const int stable : {0, 1})
-    if (!x[stable].empty())
-      diagram.add(stable ? CurveStyle::points : CurveStyle::open_points, stable ? "stable" : "not stable",
-                  Eigen::Map<VectorXd>(x[stable].data(), static_cast<Index>(x[stable].size())),
-                  Eigen::Map<VectorXd>(y[stable].data(), static_cast<Index>(y[stable].size())),
-                  stable ? Colour::blue : Colour::grey);
+  add_channels(diagram, study.channels);
+  add_poles(diagram, study.stabilisation.poles, Stability::unstable, "not stable");
+  add_poles(diagram, study.stabilisation.poles, Stability::frequency, "stable in frequency");
+  add_poles(diagram, study.stabilisation.poles, Stability::full, "stable");
   diagram.x_axis.range = study.band_hz;
   figure.caption = "Frequency responses to the hammer: magnitude, phase and coherence, with the modal fit.";
   std::vector<Figure> all{std::move(figure)};
-  if (!diagram.curves.empty()) all.push_back({"stabilisation", {std::move(diagram)}});
+  if (!diagram.curves.empty()) {
+    all.push_back({"stabilisation", {std::move(diagram)}});
+    all.back().caption = "Stabilisation diagram: poles by model order.";
+  }
   return all;
 }
 

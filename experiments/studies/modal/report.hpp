@@ -51,6 +51,14 @@ Results report(const ModalStudySettings& settings, const HammerStudy& study);
 /// Sections for each record, then one for all of them where there are several; figures, results.json.
 Results report(const ModalStudySettings& settings, const std::vector<RecordModes>& records);
 
+/// The poles of one stability as points of a diagram; a click on one shows its damping ratio, what is known
+/// of its standard deviations, and its shape where there are two channels at least.
+void add_poles(Panel& panel, const std::vector<DiagramPole>& poles, Stability stability,
+               const std::string& label);
+
+/// Names of the channels of shapes in a panel, and their places along a line where all measure one quantity.
+void add_channels(Panel& panel, const std::vector<Channel>& channels);
+
 /// Stabilisation diagram, measured and reproduced motion and spectrum, singular values; `suffix` of names.
 std::vector<Figure> figures(const RecordModes& found, const std::string& suffix);
 

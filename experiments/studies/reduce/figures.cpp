@@ -164,16 +164,19 @@ SwingModel paired_modes(const fem::Structure& structure, const ReductionComparis
   std::vector<VectorXd> shapes;
   std::vector<double> frequencies;
   std::vector<std::string> names;
+  std::vector<std::optional<int>> beside;  // of a partner the mode of the mesh
   const auto add = [&](const VectorXd& shape, double frequency_hz, const std::string& name) {
     shapes.push_back(shape);
     frequencies.push_back(frequency_hz);
     names.push_back(name);
+    beside.emplace_back();
   };
   const Index rigid = all.modes.modes.rigid, each = 1 + static_cast<Index>(all.reductions.size());
   const Index shown = std::clamp<Index>(most_drawn_modes / each, 1, modes_with_partner(all));
   for (Index i = 0; i < shown; ++i) {
     add(all.modes.shapes.col(rigid + i), all.mode_hz(i),
         fmt::format("mode {}, {:.5g} Hz", i + 1, all.mode_hz(i)));
+    const auto of_mesh = static_cast<int>(names.size()) - 1;
     for (const ComparedReduction& one : all.reductions) {
       const Index partner = one.partner[static_cast<std::size_t>(i)] + one.modes.modes.rigid;
       if (one.partner[static_cast<std::size_t>(i)] < 0 || partner >= one.modes.shapes.cols()) continue;
@@ -181,13 +184,15 @@ SwingModel paired_modes(const fem::Structure& structure, const ReductionComparis
       add(one.modes.shapes.col(partner), one.frequency_hz[i],
           fmt::format("mode {} of {}, {:.5g} Hz, MAC {:.4f}", i + 1, one.label, one.frequency_hz[i],
                       one.mac[i]));
+      beside.back() = of_mesh;
     }
   }
   Eigen::MatrixXd matrix(all.system.size(), static_cast<Index>(shapes.size()));
   for (std::size_t k = 0; k < shapes.size(); ++k) matrix.col(static_cast<Index>(k)) = shapes[k];
   const VectorXd frequency_hz = Eigen::Map<const VectorXd>(frequencies.data(), matrix.cols());
   SwingModel model = mode_model(Picture(structure, all.system), matrix, frequency_hz);
-  for (std::size_t k = 0; k < names.size(); ++k) model.modes[k].name = names[k];
+  for (std::size_t k = 0; k < names.size(); ++k)
+    model.modes[k].name = names[k], model.modes[k].beside = beside[k];
   return model;
 }
 

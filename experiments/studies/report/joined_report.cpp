@@ -329,7 +329,9 @@ void write_joined_report(const std::vector<fs::path>& folders, const fs::path& f
       sections.push_back(std::move(section));
     }
   }
-  sections.insert(sections.begin(), {"Methods and versions", methods_html(results, commands)});
+  // Of one folder its page comes first, of several what distinguishes them.
+  sections.insert(results.size() > 1 ? sections.begin() : sections.end(),
+                  {"Methods and versions", methods_html(results, commands)});
   if (results.size() > 1)
     sections.insert(sections.begin(), {"Side by side", side_by_side_html(results, all)});
   replace_file(file, report_page(sections));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <set>
 
@@ -44,15 +45,11 @@ Cell sweep_percent(const filters::Proportion& proportion) {
   return proportion.runs > 0 ? 100.0 * proportion.value() : std::nan("");
 }
 
-bool is_drawn(const VariedKey& key) {
-  return key.law != VariedKey::Law::grid;
-}
-
 Table table_of(const SweepPlan& plan, const std::vector<PointStatistics>& all, const std::string& parameter) {
   Table table{"summary", "Runs without an estimate"};
   if (!parameter.empty()) table = {"summary_" + parameter, parameter};
   for (const VariedKey& key : plan.varied)
-    if (!is_drawn(key)) table.column({key.key.substr(key.key.rfind('.') + 1), key.key, "{:.6g}"});
+    if (!key.is_drawn()) table.column({key.key.substr(key.key.rfind('.') + 1), key.key, "{:.6g}"});
   const auto ways = differing(all);
   for (const auto& [name, member] : ways) table.column({name, name});
   const bool truth = std::any_of(all.begin(), all.end(), [&](const PointStatistics& one) {
@@ -77,7 +74,7 @@ Table table_of(const SweepPlan& plan, const std::vector<PointStatistics>& all, c
     std::vector<Cell> row;
     const auto values = values_of_point(plan, one.point);
     for (std::size_t j = 0; j < values.size(); ++j) {
-      if (is_drawn(plan.varied[j])) continue;
+      if (plan.varied[j].is_drawn()) continue;
       const double* const number = std::get_if<double>(&values[j]);
       row.push_back(number ? Cell(*number) : Cell(word_of(values[j])));
     }
@@ -195,13 +192,14 @@ std::string name_of(const SweepPlan& plan, const std::vector<PointStatistics>& a
   const auto add = [&](const std::string& part) { name += (name.empty() ? "" : ", ") + part; };
   const auto values = values_of_point(plan, one.point);
   for (std::size_t j = 0; j < values.size(); ++j)
-    if (j != but && !is_drawn(plan.varied[j]))
+    if (j != but && !plan.varied[j].is_drawn())
       add(plan.varied[j].key.substr(plan.varied[j].key.rfind('.') + 1) + " = " + word_of(values[j]));
   for (const auto& [key, member] : differing(all)) add(one.*member);
   return name;
 }
 
-Results report(const Json& manifest, const SweepPlan& plan, std::vector<SweepRow> rows) {
+Results report(const Json& manifest, const SweepPlan& plan, std::vector<SweepRow> rows,
+               const std::string& command) {
   const auto kept = std::make_shared<const std::vector<SweepRow>>(std::move(rows));
   const std::vector<PointStatistics> all = statistics(plan, *kept);
   Results results;
@@ -228,7 +226,7 @@ Results report(const Json& manifest, const SweepPlan& plan, std::vector<SweepRow
   results.values["cases"] = plan.cases();
   results.values["points"] = Json::array();
   for (const PointStatistics& one : all) results.values["points"].push_back(json_of(plan, one));
-  results.figures = figures(plan, *kept, all);
+  results.figures = figures(plan, *kept, all, command);
   results.attachments.push_back({{"cases.csv", "cases.h5", "manifest.json"},
                                  [kept, plan, manifest](const std::filesystem::path& folder) {
                                    std::string text = header_line(plan);
@@ -256,8 +254,7 @@ std::size_t abscissa(const SweepPlan& plan, bool drawn) {
     const bool numbers =
         std::all_of(key.values.begin(), key.values.end(),
                     [](const filters::OptionValue& value) { return std::holds_alternative<double>(value); });
-    const bool is_drawn = key.law != VariedKey::Law::grid;
-    if (is_drawn == drawn && (drawn || (numbers && key.values.size() > 1))) return j;
+    if (key.is_drawn() == drawn && (drawn || (numbers && key.values.size() > 1))) return j;
   }
   return plan.varied.size();
 }
@@ -279,14 +276,52 @@ std::vector<std::string> parameters_of(const std::vector<PointStatistics>& all) 
   return names;
 }
 
+/// What repeats a case, and those of the following seeds, with the values of its row.
+std::string repeating_command(std::string command, const SweepPlan& plan, const SweepRow& first, int seeds) {
+  for (std::size_t j = 0; j < plan.varied.size(); ++j)
+    command += " --vary " + shell_word(plan.varied[j].key + "=" + first.values[j]);
+  if (plan.samples > 1) command += " --random 1";
+  if (plan.once) command += " --once";
+  return command + fmt::format(" --seeds {} --seed {}", seeds, first.seed);
+}
+
+/// What a click on a point of the figure shows.
+PointDetail runs_of(const SweepPlan& plan, const std::vector<const SweepRow*>& of_point,
+                    const PointStatistics& one, const std::string& title, const std::string& command,
+                    std::size_t most) {
+  std::vector<const SweepRow*> runs;
+  for (const SweepRow* row : of_point)
+    if (one.same_run(*row) && (row->parameter == one.parameter || row->parameter.empty()))
+      runs.push_back(row);
+  PointDetail detail{title, run_table(plan, runs, one.unit, most)};
+  if (runs.empty()) return detail;
+  const bool drawn = std::any_of(plan.varied.begin(), plan.varied.end(), std::mem_fn(&VariedKey::is_drawn));
+  detail.command = repeating_command(command, plan, *runs.front(), drawn ? 1 : plan.seeds);
+  if (runs.size() > most)
+    detail.note =
+        fmt::format("{} of {} runs, the largest errors first; cases.csv has all. ", most, runs.size());
+  if (drawn) detail.note += fmt::format("The command repeats case {}.", runs.front()->number);
+  return detail;
+}
+
+/// Rows by the point of the grid that they belong to.
+std::vector<std::vector<const SweepRow*>> by_point(const SweepPlan& plan, const std::vector<SweepRow>& rows) {
+  std::vector<std::vector<const SweepRow*>> found(plan.points());
+  for (const SweepRow& row : rows) found[plan.point_of(row.number)].push_back(&row);
+  return found;
+}
+
 /// Entries of one parameter that differ in the abscissa only.
 struct Series {
   std::string name;
   std::vector<double> x, rms, bound, coverage, lower, upper;
+  std::vector<PointDetail> details;
 };
 
+using CellDetail = std::function<PointDetail(const PointStatistics& one, const std::string& title)>;
+
 std::vector<Series> series_of(const SweepPlan& plan, const std::vector<PointStatistics>& all,
-                              const std::string& parameter, std::size_t key) {
+                              const std::string& parameter, std::size_t key, const CellDetail& detail_of) {
   std::vector<Series> found;
   for (const PointStatistics& one : all) {
     if (one.parameter != parameter) continue;
@@ -294,9 +329,11 @@ std::vector<Series> series_of(const SweepPlan& plan, const std::vector<PointStat
     auto at =
         std::find_if(found.begin(), found.end(), [&](const Series& other) { return other.name == name; });
     if (at == found.end() && found.size() == most_sweep_curves) continue;
-    if (at == found.end()) at = found.insert(at, Series{name, {}, {}, {}, {}, {}, {}});
+    if (at == found.end()) at = found.insert(at, Series{name, {}, {}, {}, {}, {}, {}, {}});
     at->x.push_back(std::get<double>(values_of_point(plan, one.point)[key]));
     at->rms.push_back(one.rms_percent);
+    const std::string title = name_of(plan, all, one, plan.varied.size());
+    at->details.push_back(detail_of(one, parameter + (title.empty() ? "" : ": ") + title));
     at->bound.push_back(one.bound_percent);
     const bool known = one.coverage.runs > 0;
     at->coverage.push_back(known ? 100.0 * one.coverage.value() : std::nan(""));
@@ -320,10 +357,12 @@ void add_panels(Figure& figure, const std::string& key, const std::string& param
     const Series& one = all[i];
     const VectorXd x = vector_of(one.x);
     const std::string label = one.name.empty() ? "filter" : one.name;
-    errors.points(label, x, vector_of(one.rms), sweep_colours[i])
-        .dashed(i == 0 ? "Cramér-Rao bound" : "", x, vector_of(one.bound), sweep_colours[i]);
+    errors.points(label, x, vector_of(one.rms), sweep_colours[i]);
+    errors.curves.back().details = one.details;
+    errors.dashed(i == 0 ? "Cramér-Rao bound" : "", x, vector_of(one.bound), sweep_colours[i]);
     coverage.bars(label, x, vector_of(one.coverage), vector_of(one.lower), vector_of(one.upper),
                   sweep_colours[i]);
+    coverage.curves.back().details = one.details;
   }
   coverage.level("95 %", 95.0, Colour::grey);
   for (Panel& earlier : figure.panels) earlier.legend = Legend::none;  // said once, below the last parameter
@@ -332,19 +371,26 @@ void add_panels(Figure& figure, const std::string& key, const std::string& param
 }
 
 Figure scattered(const SweepPlan& plan, const std::vector<SweepRow>& rows,
-                 const std::vector<std::string>& parameters, std::size_t key) {
+                 const std::vector<std::string>& parameters, std::size_t key, const std::string& command) {
+  constexpr std::size_t most_details = 1000;
   Figure figure{"sweep", {}, static_cast<int>(parameters.size()), 1};
   for (const std::string& parameter : parameters) {
     std::vector<double> x, error;
+    std::vector<PointDetail> details;
     for (const SweepRow& row : rows) {
       if (row.parameter != parameter || row.status != "converged") continue;
       x.push_back(number(row.values[key]).value_or(std::nan("")));
       error.push_back(100.0 * row.error / std::abs(row.truth));
+      if (rows.size() <= most_details)
+        details.push_back({fmt::format("{}, case {}", parameter, row.number),
+                           run_table(plan, {&row}, row.unit, 1), "",
+                           repeating_command(command, plan, row, 1)});
     }
     figure.panels.push_back(
         Panel{parameter, {key_label(plan.varied[key].key), logarithmic(vector_of(x))}, {"error [%]"}}
             .points("", vector_of(x), vector_of(error))
             .key(Legend::none));
+    figure.panels.back().curves.back().details = std::move(details);
   }
   return figure;
 }
@@ -352,19 +398,27 @@ Figure scattered(const SweepPlan& plan, const std::vector<SweepRow>& rows,
 }  // namespace
 
 std::vector<Figure> figures(const SweepPlan& plan, const std::vector<SweepRow>& rows,
-                            const std::vector<PointStatistics>& statistics) {
+                            const std::vector<PointStatistics>& statistics, const std::string& command) {
+  constexpr std::size_t most_listed = 20, listed_in_all = 2000;
   const std::vector<std::string> parameters = parameters_of(statistics);
   const std::size_t key = abscissa(plan, false), drawn = abscissa(plan, true);
   if (parameters.empty()) return {};
   if (key == plan.varied.size())
-    return drawn == plan.varied.size() ? std::vector<Figure>{}
-                                       : std::vector<Figure>{scattered(plan, rows, parameters, drawn)};
+    return drawn == plan.varied.size()
+               ? std::vector<Figure>{}
+               : std::vector<Figure>{scattered(plan, rows, parameters, drawn, command)};
   Figure figure{"sweep", {}, static_cast<int>(parameters.size()), 2};
   figure.width = 1000;
   figure.caption =
       "Root mean square error with the Cramér-Rao bound, and how often the 95 % interval holds the truth.";
+  const auto cells = by_point(plan, rows);
+  const std::size_t most = std::clamp<std::size_t>(listed_in_all / statistics.size(), 3, most_listed);
+  const CellDetail detail_of = [&](const PointStatistics& one, const std::string& title) {
+    return runs_of(plan, cells[one.point], one, title, command, most);
+  };
   for (const std::string& parameter : parameters)
-    add_panels(figure, plan.varied[key].key, parameter, series_of(plan, statistics, parameter, key));
+    add_panels(figure, plan.varied[key].key, parameter,
+               series_of(plan, statistics, parameter, key, detail_of));
   return {figure};
 }
 

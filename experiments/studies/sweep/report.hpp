@@ -42,13 +42,17 @@ Results merge(const std::vector<std::filesystem::path>& folders);
 /// A table of statistics per unknown, a figure against the first key that is a number, cases.csv, cases.h5
 /// and manifest.json. The same rows give the same files, whoever worked them out.
 /// @param rows of all cases, sorted
-Results report(const nlohmann::ordered_json& manifest, const SweepPlan& plan, std::vector<SweepRow> rows);
+/// @param command "beamid sweep RECORD --config FILE --truth FILE", as far as it does not state the plan: a
+/// click on a point of the figure shows what repeats it
+Results report(const nlohmann::ordered_json& manifest, const SweepPlan& plan, std::vector<SweepRow> rows,
+               const std::string& command = "beamid sweep --config FILE");
 
 /// Of every unknown, relative to its truth: against the first grid key that is a number, the rms of the
 /// errors beside the bound, and how often the interval held the truth; without such a key, the errors against
-/// the first one drawn; else none.
+/// the first one drawn; else none. A click on a point shows its runs and what repeats them.
 std::vector<Figure> figures(const SweepPlan& plan, const std::vector<SweepRow>& rows,
-                            const std::vector<PointStatistics>& statistics);
+                            const std::vector<PointStatistics>& statistics,
+                            const std::string& command = "beamid sweep --config FILE");
 
 /// "damping.ratio = 0.01, ekf": what sets an entry apart from the others; without the key `but`.
 std::string name_of(const SweepPlan& plan, const std::vector<PointStatistics>& all,

@@ -64,6 +64,7 @@ Results twins_report(const Experiment& experiment, const UpdateStudy& study) {
   results.heading("Modes");
   results.table(measured_mode_table(study));
   results.figures.push_back(update_figure(study, "twins"));
+  add_swinging_modes(study, results);
   return results;
 }
 

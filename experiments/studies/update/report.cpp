@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "experiments/config/description.hpp"
 #include "experiments/identify/update/mode_pairing.hpp"
 #include "experiments/results/forest_plot.hpp"
+#include "experiments/results/mode_figure.hpp"
+#include "experiments/results/result_directory.hpp"
 
 namespace beamid::experiments {
 namespace {
@@ -59,6 +63,7 @@ Results report(const Experiment& experiment, const UpdateStudy& study) {
                                        : "No other set was found that fits as well.");
   if (study.updating.as_well() > 1 && !study.deciding.empty()) results.table(deciding_table(study.deciding));
   results.figures.push_back(update_figure(study, "updated_parameters"));
+  add_swinging_modes(study, results);
   return results;
 }
 
@@ -69,15 +74,95 @@ using Eigen::Index;
 constexpr Colour set_colours[] = {Colour::blue,   Colour::vermillion, Colour::green,
                                   Colour::purple, Colour::orange,     Colour::sky};
 
+/// The sets that fit as well, as many as the figure shows.
+std::vector<const ParameterSet*> drawn_sets(const UpdateStudy& study) {
+  std::vector<const ParameterSet*> drawn;
+  for (const ParameterSet& set : study.updating.sets)
+    if (set.as_well && drawn.size() < std::size(set_colours)) drawn.push_back(&set);
+  return drawn;
+}
+
+std::string set_mode_name(std::size_t set, std::size_t sets, Index mode, double frequency_hz) {
+  return fmt::format("mode {} {}, {:.5g} Hz", mode + 1,
+                     sets == 1 ? std::string("updated") : fmt::format("of set {}", set + 1), frequency_hz);
+}
+
+PointDetail set_detail(const UpdateStudy& study, const std::vector<const ParameterSet*>& sets,
+                       std::size_t s) {
+  const ParameterSet& set = *sets[s];
+  PointDetail detail{sets.size() == 1 ? "updated" : fmt::format("set {}", s + 1),
+                     {{"parameter", "value", "unit", "over described"}}};
+  for (std::size_t j = 0; j < study.unknowns().size(); ++j) {
+    const Unknown& unknown = study.unknowns()[j];
+    const double value = set.values[static_cast<Index>(j)];
+    detail.rows.push_back({unknown.name, fmt::format("{:.5g}", value), unknown.unit,
+                           unknown.guess != 0.0 ? fmt::format("{:.3f}", value / unknown.guess) : "-"});
+  }
+  const double chi_square = set.fit.chi_square();
+  detail.note = fmt::format("chi^2 {:.3g}; {} of {} starts ended here.", chi_square < 1e-6 ? 0.0 : chi_square,
+                            set.starts, study.updating.starts);
+  if (!study.model->described().system.mesh.nodes.empty()) {
+    const Index mode = set.fit.value.pairs.front();
+    detail.mode = set_mode_name(s, sets.size(), mode, set.fit.value.modes.frequency_hz[mode]);
+  }
+  return detail;
+}
+
 }  // namespace
+
+void add_swinging_modes(const UpdateStudy& study, Results& results) {
+  const fem::StructuralSystem& system = study.model->described().system;
+  if (system.mesh.nodes.empty()) return;
+  const std::vector<const ParameterSet*> sets = drawn_sets(study);
+  if (sets.empty()) return;
+  const auto most = std::max<std::size_t>(1, most_drawn_modes / (1 + sets.size()));
+  const FoundModes described = study.model->found(study.model->described().values, false);
+  std::vector<Eigen::VectorXd> shapes;
+  std::vector<double> frequencies;
+  std::vector<std::string> names;
+  std::vector<std::optional<int>> beside;
+  const auto add = [&](const Eigen::VectorXd& shape, double frequency_hz, std::string name) {
+    shapes.push_back(shape);
+    frequencies.push_back(frequency_hz);
+    names.push_back(std::move(name));
+    beside.emplace_back();
+  };
+  std::vector<FoundModes> found;
+  for (const ParameterSet* set : sets) found.push_back(study.model->found(set->values, false));
+  for (std::size_t i = 0; i < std::min(most, study.data().modes.size()); ++i) {
+    const Index before = sets.front()->fit.value.pairs[i];
+    const auto at = static_cast<int>(shapes.size() + sets.size());
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      const auto& value = sets[s]->fit.value;
+      const Index mode = value.pairs[i];
+      const double frequency_hz = value.modes.frequency_hz[mode];
+      Eigen::VectorXd shape = found[s].shapes.col(mode);
+      if (shape.dot(described.shapes.col(before)) < 0.0) shape = -shape;  // both swing to the same side
+      add(shape, frequency_hz, set_mode_name(s, sets.size(), mode, frequency_hz));
+      beside.back() = at;
+    }
+    const double frequency_hz = study.described.frequency_hz[before];
+    add(described.shapes.col(before), frequency_hz,
+        fmt::format("mode {} as described, {:.5g} Hz", before + 1, frequency_hz));
+  }
+  Eigen::MatrixXd matrix(system.size(), static_cast<Index>(shapes.size()));
+  for (std::size_t k = 0; k < shapes.size(); ++k) matrix.col(static_cast<Index>(k)) = shapes[k];
+  SwingModel model = mode_model(Picture(study.model->structure(), system), matrix,
+                                Eigen::Map<const Eigen::VectorXd>(frequencies.data(), matrix.cols()));
+  for (std::size_t k = 0; k < names.size(); ++k)
+    model.modes[k].name = names[k], model.modes[k].beside = beside[k];
+  results.attachments.push_back({{"modes.glb"}, [model](const std::filesystem::path& folder) {
+                                   write_file(folder / "modes.glb", binary_gltf(model));
+                                 }});
+}
 
 // A row for each parameter: the sets that fit as well, in parts of the description.
 Figure update_figure(const UpdateStudy& study, const std::string& name) {
   ForestPlot plot{"", "parameter / described, 95 % intervals", {}, {}};
   for (const Unknown& unknown : study.unknowns()) plot.names.push_back(unknown.name);
-  std::size_t number = 0;
-  for (const ParameterSet& set : study.updating.sets) {
-    if (!set.as_well || number >= std::size(set_colours)) continue;
+  const std::vector<const ParameterSet*> sets = drawn_sets(study);
+  for (std::size_t number = 0; number < sets.size(); ++number) {
+    const ParameterSet& set = *sets[number];
     ForestSeries series{fmt::format("set {}", number + 1), {}, {}, {}, set_colours[number]};
     for (std::size_t j = 0; j < study.unknowns().size(); ++j) {
       const double described = study.unknowns()[j].guess,
@@ -88,14 +173,15 @@ Figure update_figure(const UpdateStudy& study, const std::string& name) {
       series.lower.push_back(interval ? one.lower_95 / described : value);
       series.upper.push_back(interval ? one.upper_95 / described : value);
     }
+    series.details.push_back(set_detail(study, sets, number));
     plot.series.push_back(std::move(series));
-    ++number;
   }
-  if (number == 1) plot.series[0].label.clear();
+  if (sets.size() == 1) plot.series[0].label.clear();
   plot.reference = ForestReference{"as described", 1.0};
   Figure figure{name, {forest_panel(plot)}};
   figure.height = forest_height(plot.names.size() * std::max<std::size_t>(1, plot.series.size() / 2), 1);
-  figure.caption = "Updated parameters over those described; every set that fits as well.";
+  figure.caption = sets.size() == 1 ? "Updated parameters over those described."
+                                    : "Parameters over those described, of every set that fits as well.";
   return figure;
 }
 

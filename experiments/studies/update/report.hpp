@@ -36,7 +36,11 @@ Table parameter_table(const UpdateStudy& study);
 Table set_table(const UpdateStudy& study, std::size_t most, bool all);
 Table measured_mode_table(const UpdateStudy& study);
 Table deciding_table(const std::vector<DecidingMeasurement>& deciding);
+/// A click on a set shows its values, and its lowest mode swings.
 Figure update_figure(const UpdateStudy& study, const std::string& name);
+/// The modes measured, of the structure as described and of every set in the figure, 12 at most, as
+/// modes.glb; nothing for a structure without a mesh.
+void add_swinging_modes(const UpdateStudy& study, Results& results);
 nlohmann::ordered_json update_values(const UpdateStudy& study);
 /// Title, trust, starts.
 nlohmann::ordered_json update_configuration(const Experiment& experiment, const UpdateStudy& study);

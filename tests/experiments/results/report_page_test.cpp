@@ -204,6 +204,18 @@ TEST(ReportPage, HasAVerdictOfWholeSentences) {
   EXPECT_THAT(report_section(results, ".").html, HasSubstr("<b>With warnings.</b> " + first + "</p>"));
 }
 
+TEST(ReportPage, StatesAWarningOnceWhereTheVerdictHoldsItInFull) {
+  Results results;
+  results.command = "twins";
+  results.warning("Six sets explain the modes.");
+  const std::string html = report_section(results, ".").html;
+  EXPECT_THAT(html, HasSubstr("<b>With warnings.</b> Six sets explain the modes."));
+  EXPECT_THAT(html, Not(HasSubstr("class=\"warning\"")));
+  results.warning("Another.");
+  EXPECT_THAT(report_section(results, ".").html,
+              HasSubstr("<p class=\"warning\">Six sets explain the modes.</p>"));
+}
+
 TEST(ReportPage, FoldsWhatComesAfterTheAnswerUnlessItWarns) {
   Results results = small_results(1.0);
   for (const char* heading : {"Details", "Doubts"}) results.heading(heading);
@@ -255,6 +267,70 @@ nlohmann::json figure_json(const std::string& attributes) {
     if ((bits += 6) >= 8) bytes += static_cast<char>(held >> (bits -= 8) & 255);
   }
   return nlohmann::json::parse(bytes);
+}
+
+TEST(ReportPage, HasFiguresBehindTheTablesOfTheAnswerAndBeforeRemarks) {
+  Results results = small_results(1.0);
+  results.paragraph("The noise is white.");
+  results.figures.push_back(drawn_figure(101));
+  const std::string html = report_section(results, ".").html;
+  EXPECT_LT(html.find("</table>"), html.find("<h2>Figures</h2>"));
+  const std::size_t remarks = html.find("<summary><h2>Remarks</h2></summary>\n<p>The noise is white.</p>");
+  EXPECT_NE(remarks, std::string::npos);
+  EXPECT_LT(html.find("<h2>Figures</h2>"), remarks);
+}
+
+TEST(ReportPage, IsEntitledByExperimentAndCommandWhereTheVerdictComesFirst) {
+  Results results;
+  results.command = "update";
+  results.configuration["title"] = "four <storeys>";
+  results.paragraph("One set explains the modes.");
+  results.heading("Parameters");
+  Table table{"parameters", ""};
+  table.column({"K [N/m]", "stiffness_n_per_m", "{:.2f}"}).row({1.0});
+  results.table(std::move(table));
+  results.heading("Modes");
+  const ReportSection section = report_section(results, ".");
+  EXPECT_EQ(section.title, "four <storeys>: update");
+  EXPECT_THAT(section.html, HasSubstr("<h1>four &lt;storeys&gt;: update</h1>"));
+  EXPECT_THAT(section.html, HasSubstr("</p>\n<h2>Parameters</h2>\n"));
+  EXPECT_THAT(section.html, HasSubstr("<summary><h2>Modes</h2></summary>"));
+  results.configuration.erase("title");
+  EXPECT_EQ(report_section(results, ".").title, "beamid update");
+}
+
+TEST(FigureAttributes, HoldWhatAClickShows) {
+  Figure figure = drawn_figure(4);
+  Panel& panel = figure.panels[0];
+  panel.channels = {"<low>", "tip"};
+  Curve& curve = panel.curves[0];
+  curve.facts.push_back({"damping ratio [%]", Eigen::Vector4d(1, 2, 4, 7)});
+  curve.shapes = Eigen::MatrixXcd::Constant(2, 4, {0.0, 3.0});
+  curve.details.assign(4, {"set 1", {{"name", "value"}, {"K", "1.5"}}});
+  curve.details[2].command = "beamid sweep";
+  panel.curves.push_back(curve);
+  const nlohmann::json found = figure_json(figure_attributes({figure}).at(0)), &first = found["panels"][0];
+  EXPECT_EQ(first["channels"], nlohmann::json({"<low>", "tip"}));
+  for (const nlohmann::json& one : first["curves"]) {
+    EXPECT_EQ(one["facts"][0]["label"], "damping ratio [%]");
+    EXPECT_EQ(one["facts"][0]["values"]["n"], 4);
+    EXPECT_EQ(one["shapes"][1]["n"], 8);
+    EXPECT_EQ(one["details"], nlohmann::json({0, 0, 1, 0}));  // the same text stands once
+  }
+  EXPECT_EQ(found["details"].size(), 2u);
+  EXPECT_EQ(found["details"][1]["command"], "beamid sweep");
+  EXPECT_EQ(found["details"][0]["rows"][1][1], "1.5");
+}
+
+TEST(FigureAttributes, KeepTheShapesOfThePolesInFrontWhereThereAreTooMany) {
+  Figure figure = drawn_figure(4);
+  Panel& panel = figure.panels[0];
+  panel.curves.assign(3, panel.curves[0]);
+  for (Curve& curve : panel.curves) curve.shapes = Eigen::MatrixXcd::Ones(2000, 4);
+  const nlohmann::json curves = figure_json(figure_attributes({figure}).at(0))["panels"][0]["curves"];
+  EXPECT_FALSE(curves[0].contains("shapes"));
+  EXPECT_TRUE(curves[1].contains("shapes"));
+  EXPECT_TRUE(curves[2].contains("shapes"));
 }
 
 TEST(FigureAttributes, KeepLogarithmicAxesAndStateEquallySpacedTimesByTheirStep) {
