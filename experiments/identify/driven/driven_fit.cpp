@@ -24,6 +24,25 @@ namespace beamid::experiments {
 
 using Eigen::Index, Eigen::MatrixXcd, Eigen::MatrixXd, Eigen::VectorXcd, Eigen::VectorXd;
 
+namespace {
+
+/// By how much the sections' scores scatter beyond their information, all directions of the unknowns alike,
+///
+///     c = S / ((S - 1) q) sum_i s_i^T I^-1 s_i,    1 of noise, as of a chi-square of nu degrees of freedom
+///
+/// with nu = q^2 / sum_i tr (I^-1 I_i)^2 - q. A few sections determine one variance of V poorly: by chance it
+/// is a tenth of what it should be, and then it is at least that of c I^-1. 1 where c may be chance.
+/// @param steps I^-1 s_i of every section (q x S); @param scores s_i, without their mean (q x S)
+double common_scatter(const MatrixXd& steps, const MatrixXd& scores, double squared_shares) {
+  constexpr double surely = 0.999;
+  const auto q = static_cast<double>(scores.rows()), sections = static_cast<double>(scores.cols());
+  const double c = sections / ((sections - 1.0) * q) * steps.cwiseProduct(scores).sum(),
+               freedom = std::max(1.0, q * q / squared_shares - q);
+  return c * freedom > chi_square_limit(freedom, surely) ? c : 1.0;
+}
+
+}  // namespace
+
 std::optional<SectionScatter> section_scatter(const JointModel& model, const filters::Measurements& record,
                                               const filters::Gaussian& prior, const VectorXd& theta,
                                               double lowest_hz, const VectorXd& input_noise) {
@@ -59,25 +78,39 @@ std::optional<SectionScatter> section_scatter(const JointModel& model, const fil
     found.estimates.resize(q, sections);
     found.own_deviation.resize(q, sections);
     found.size.resize(sections);
-    MatrixXd spread = MatrixXd::Zero(q, q);
-    VectorXd weights = VectorXd::Zero(q), squares = VectorXd::Zero(q);
     const VectorXd mean_score = 2.0 * fit.scores.rowwise().mean();
+    const MatrixXd scores = (2.0 * fit.scores).colwise() - mean_score, steps = all_sections.solve(scores);
+    VectorXd weights = VectorXd::Zero(q), squares = VectorXd::Zero(q);
+    double squared_shares = 0.0;  // of the information
     for (Index i = 0; i < sections; ++i) {
       const MatrixXd own = 2.0 * fit.part_information[static_cast<std::size_t>(i)];
-      const VectorXd score = 2.0 * fit.scores.col(i) - mean_score, step = all_sections.solve(score);
-      spread += step * step.transpose();
       const Eigen::LDLT<MatrixXd> alone(own + known);
       found.estimates.col(i) = theta + alone.solve(2.0 * fit.scores.col(i));
       const MatrixXd covariance = alone.solve(MatrixXd::Identity(q, q));
       found.own_deviation.col(i) = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
       found.size[i] = parts->parts[static_cast<std::size_t>(i)].outputs.norm();
+      const MatrixXd share = all_sections.solve(own);
+      squared_shares += share.cwiseProduct(share.transpose()).sum();
       weights += own.diagonal();
       squares += own.diagonal().cwiseAbs2();
     }
     found.size /= std::max(1e-300, std::sqrt(found.size.squaredNorm() / static_cast<double>(sections)));
-    found.covariance =
-        spread * (static_cast<double>(sections) / static_cast<double>(std::max<Index>(1, sections - q)));
     found.freedom = (weights.cwiseAbs2().cwiseQuotient(squares.cwiseMax(1e-300)).array() - 1.0).cwiseMax(1.0);
+    found.covariance =
+        steps * steps.transpose() *
+        (static_cast<double>(sections) / static_cast<double>(std::max<Index>(1, sections - q)));
+    if (const double common = common_scatter(steps, scores, squared_shares); common > 1.0) {
+      const VectorXd formal = all_sections.solve(MatrixXd::Identity(q, q)).diagonal();
+      const double all_freedom = static_cast<double>(sections - 1);
+      VectorXd wider = VectorXd::Ones(q);
+      for (Index j = 0; j < q; ++j) {
+        const double student = student_factor(all_freedom) / student_factor(found.freedom[j]),
+                     least = student * student * common * formal[j];
+        if (least > found.covariance(j, j))
+          wider[j] = std::sqrt(least / std::max(1e-300, found.covariance(j, j)));
+      }
+      found.covariance = wider.asDiagonal() * found.covariance * wider.asDiagonal();
+    }
     if (!found.covariance.allFinite()) return {};
     return found;
   } catch (const std::runtime_error&) {  // no motion at these unknowns

@@ -11,6 +11,7 @@
 #include "experiments/identify/engine/run_bound.hpp"
 #include "experiments/identify/verdict/reproduction.hpp"
 #include "experiments/models/joint_model.hpp"
+#include "filters/scheme_bias.hpp"
 #include "filters/smoother.hpp"
 
 namespace beamid::experiments {
@@ -24,6 +25,11 @@ std::string unsettled_text(double moved) {
       "Not settled: its last pass moved an unknown by {:.2g} standard deviations. More passes ([compare] "
       "passes) or nearer initial estimates are needed.",
       moved);
+}
+
+// Its error of a pole over the pole is of order dt: the bias of a damping ratio is as large as the ratio.
+bool is_of_first_order(const std::string& scheme) {
+  return filters::bias_series(*filters::scheme_registry().make(scheme, {}), 1).front() != 0.0;
 }
 
 }  // namespace
@@ -116,8 +122,8 @@ void Passes::look_at_sections() {
   constexpr double white = 1e-3;
   const bool innovations_are_white = run_.diagnostics && run_.diagnostics->consistency &&
                                      run_.diagnostics->consistency->whiteness_p_value > white;
-  const bool is_biased = settings_.discretisation.ends_with("_euler");  // of first order
-  if (run_.sections && !run_.sections->is_long() && (innovations_are_white || is_biased))
+  if (run_.sections && !run_.sections->is_long() &&
+      (innovations_are_white || is_of_first_order(settings_.discretisation)))
     run_.sections.reset();
 }
 
