@@ -10,8 +10,8 @@ std::unique_ptr<Filter> extended_kalman(std::unique_ptr<DiscreteModel> model) {
       std::move(model));
 }
 
-// Of one mode, K and C, with the sensor's bias or without it, seen by one or two channels, the sizes are
-// known to the compiler, which unrolls the products.
+// Of one mode, K and C, with the sensor's bias or without it, seen by one or two channels, and of one that is
+// tracked (7 states) the sizes are known to the compiler, which unrolls the products.
 template <int N>
 std::unique_ptr<Filter> of_one_mode(std::unique_ptr<DiscreteModel> model) {
   const std::size_t outputs = model->output_labels().size();
@@ -24,6 +24,7 @@ std::unique_ptr<Filter> make_ekf(std::unique_ptr<DiscreteModel> model, const Opt
   const std::size_t states = model ? model->state_labels().size() : 0;
   if (states == 4) return of_one_mode<4>(std::move(model));
   if (states == 5) return of_one_mode<5>(std::move(model));
+  if (states == 7) return of_one_mode<7>(std::move(model));
   return extended_kalman<Eigen::Dynamic, Eigen::Dynamic>(std::move(model));
 }
 

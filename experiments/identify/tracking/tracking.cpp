@@ -64,8 +64,9 @@ filters::Measurements Ringing::span(Index first, Index last) const {
   return {time.segment(first, count), signal.segment(first, count).transpose(), {}, {}, 1e-3 * interval};
 }
 
-std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise) {
-  return filters::filter_registry().make("ekf", {},
+std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise,
+                                                const std::string& method) {
+  return filters::filter_registry().make(method, {},
                                          ringing_model(ringing.centre_hz, ringing.interval, noise));
 }
 
@@ -200,11 +201,18 @@ Levels tuned(const Ringing& ringing, const filters::Measurements& span, const fi
 
 std::vector<filters::Gaussian> smoothed(const Ringing& ringing, const filters::Measurements& span,
                                         const filters::Gaussian& initial, const filters::Noise& noise) {
-  const auto filter = ringing_filter(ringing, noise);
-  const filters::FilterRun run = filters::run(*filter, initial, span, filters::Keep::all_estimates);
-  if (run.failure) return run.filtered;
-  const auto model = ringing_model(ringing.centre_hz, ringing.interval, noise);
-  return filters::smooth(run, *model, span).estimates;
+  const auto smoothed_by = [&](const std::string& method) {
+    const auto filter = ringing_filter(ringing, noise, method);
+    const filters::FilterRun run = filters::run(*filter, initial, span, filters::Keep::all_estimates);
+    if (run.failure) return run.filtered;
+    const auto model = ringing_model(ringing.centre_hz, ringing.interval, noise);
+    return filters::smooth(run, *model, span).estimates;
+  };
+  try {
+    return smoothed_by("ekf");
+  } catch (const filters::FilterFailure&) {  // a covariance that rounding over thousands of cycles has turned
+    return smoothed_by("srukf");             // indefinite: a factor cannot become so
+  }
 }
 
 void enter(const std::vector<filters::Gaussian>& estimates, Index first, double centre_hz, Tracking& result) {

@@ -32,7 +32,8 @@ struct Ringing {
 };
 
 /// An extended Kalman filter on the ringing model.
-std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise);
+std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise,
+                                                const std::string& method = "ekf");
 
 /// @param force of unmeasured excitation [unit/s2 sqrt(s)] @param walk of ln K and of twice the damping ratio
 /// [1/sqrt(s)]: a relative pole that wanders as far in any direction
