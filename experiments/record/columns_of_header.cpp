@@ -131,6 +131,9 @@ class Recognition {
           return other.ends_with("(txt)");  // kinds of values: text, numbers
         }))
       found->kind = RecognisedColumn::Kind::other;
+    if (const std::string text = folded(name);
+        states_motion_ && text.find("gravity") != text.npos && text.find("acc") == text.npos)
+      found->kind = RecognisedColumn::Kind::other;                 // of a telephone, beside accelerations
     if ((name == "U" || name == "u") && named("n") && named("e"))  // up
       found->quantity = Quantity::acceleration, found->states_quantity = false;
     const auto add = [&](std::string& list) {

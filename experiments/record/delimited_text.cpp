@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <regex>
 #include <set>
 #include <string>
 #include <utility>
@@ -59,6 +60,42 @@ bool is_key_and_value(const std::vector<std::string_view>& fields) {
   const auto named = recognise_column(std::string(unquoted(fields[1])), "");
   const bool names = named && named->kind == RecognisedColumn::Kind::signal && named->states_quantity;
   return keys.contains(name) && !(names_too.contains(name) && names);  // "Date,strain"
+}
+
+KeyInFront key_in_front(const std::vector<std::string_view>& fields, std::size_t width) {
+  static const std::set<std::string> names{"tracename", "channel", "title", "signal", "name"},
+      units{"vunit", "unit", "units", "y unit", "y-unit", "einheit"};
+  if (fields.size() != width || width < 2) return KeyInFront::none;
+  std::string key = folded(unquoted(fields[0]));
+  if (key.ends_with(':')) key.pop_back();
+  return names.contains(key) ? KeyInFront::names : units.contains(key) ? KeyInFront::units : KeyInFront::none;
+}
+
+bool numbers_components(const std::vector<std::string_view>& fields) {
+  int number = 0;
+  bool sensor = false;  // the column before the numbers
+  for (const std::string_view field : fields) {
+    const std::string text(unquoted(field));
+    if (sensor && text == std::to_string(number + 1)) {
+      ++number;
+      continue;
+    }
+    if (is_reading(text)) return false;
+    const auto found = number == 0 ? recognise_column(text, "") : std::nullopt;
+    sensor = found && found->kind == RecognisedColumn::Kind::signal && found->states_unit;
+  }
+  return number > 0;
+}
+
+void name_components(std::vector<std::string>& names) {
+  static const std::regex axis(R"( ?\([xyz]\))"), component("[0-9]+");
+  std::string sensor;
+  for (std::string& name : names) {
+    if (std::regex_match(name, component))
+      name = name + ": " + sensor;  // the unit stays at the end
+    else
+      sensor = std::regex_replace(name, axis, "");
+  }
 }
 
 std::string_view line_near(std::string_view text, double place) {

@@ -25,6 +25,15 @@ bool is_row(const std::vector<std::string_view>& fields, bool with_gaps);
 /// Two cells, a key and its value: "Sample Rate,1000", "Gain,2.0", "Units,g".
 bool is_key_and_value(const std::vector<std::string_view>& fields);
 
+/// What a first cell says of those behind it, one for each column: "TraceName","CH1" or "Y unit","g".
+enum class KeyInFront { none, names, units };
+KeyInFront key_in_front(const std::vector<std::string_view>& fields, std::size_t width);
+/// Components of a sensor that is named and has its unit once, as cameras write them: "Accelerometer [m/s2]",
+/// "1", "2".
+bool numbers_components(const std::vector<std::string_view>& fields);
+/// Numbers of components become names with the unit: "1: Accelerometer [m/s2]".
+void name_components(std::vector<std::string>& names);
+
 /// The first line that is not blank behind a place of the text, 0 to 1: where its rows are.
 std::string_view line_near(std::string_view text, double place);
 

@@ -223,6 +223,7 @@ std::string with_one_micro(std::string_view text) {
 
 // A name and the unit that stands in or behind it.
 std::pair<std::string, std::string> parted(std::string_view name) {
+  name = trimmed(name.substr(0, name.find("(LGR S/N")));  // "X Accel, g (LGR S/N: 123)", of loggers of Onset
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}, std::pair{'<', '>'}}) {
     const std::size_t from = name.rfind(open), to = name.rfind(close);
     if (from != std::string_view::npos && to != std::string_view::npos && to > from)
@@ -278,12 +279,13 @@ std::optional<StatedUnit> unit_elsewhere(const std::string& text) {
 
 // "accG", "a_mm_s2", "acc_cms2", "acc_ft_s2": of an acceleration, signs left out or no gap before it.
 std::optional<double> unit_at_the_end(std::string_view name) {
-  static const std::regex per_square(R"((?:^|[^A-Za-z])(mm|cm|m|ft|in)_?/?s_?\^?2$)"),
-      gravity(R"([a-z](m?G|mg)$)");
+  static const std::regex per_square(R"((?:^|[^A-Za-z])(mm|cm|m|ft|in)_?/?s_?\^?2(?:_[0-9])?$)"),
+      gravity(R"((?:[a-z](m?G|mg)|_(m?g)_[0-9])$)");
   std::match_results<std::string_view::const_iterator> match;
   if (std::regex_search(name.begin(), name.end(), match, per_square))
     return convertible_unit(match[1].str() + "/s2", Quantity::acceleration);
-  if (std::regex_search(name.begin(), name.end(), match, gravity)) return unit_of(match[1])->factor;
+  if (std::regex_search(name.begin(), name.end(), match, gravity))
+    return unit_of(match[match[1].matched ? 1 : 2])->factor;
   return {};
 }
 
@@ -328,8 +330,9 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
   for (const auto& [word, seconds] : clocks)
     if (any_word(words, {std::string(word)})) return is_time(seconds);
   if (const auto seconds = seconds_per_unit(stated);
-      seconds && (words.empty() || (words.size() == 1 && words[0] == "in")))
-    return is_time(seconds);  // "[s]", "in s"
+      seconds && (words.empty() || (words.size() == 1 && words[0] == "in") ||
+                  (static_cast<unsigned char>(plain[0]) & 0x80) != 0))
+    return is_time(seconds);  // "[s]", "in s", and a word of other letters
   if (const auto seconds = seconds_per_unit(trimmed(name)); seconds && stated.empty())
     return is_time(seconds);
   if (const auto seconds = seconds_per_unit(stated);
@@ -384,7 +387,9 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
   found.states_quantity = named || (known && known->quantity);
   found.quantity = Quantity::acceleration;
   if (known && known->quantity) found.quantity = *known->quantity;
-  if (named) found.quantity = by_name.value_or(found.quantity);
+  const bool letter_alone =  // "v [mm]": a unit says more
+      words.size() == 1 && words[0].size() == 1 && known && known->quantity && !direction;
+  if (named && !letter_alone) found.quantity = by_name.value_or(found.quantity);
   const Quantity in_units_of =
       found.quantity == Quantity::base_acceleration ? Quantity::acceleration : found.quantity;
   if (known && known->quantity == in_units_of) {

@@ -359,23 +359,30 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
 
 namespace {
 
-// Whether a column is the root of the sum of squares of two or three others, in a row: what phones add.
+// Whether a column is the root of the sum of squares of two or three others, in a row: what phones add. Under
+// a name of a sum, the constant that a calibration takes off may be missing.
 bool is_magnitude(const RecordTable& table, const std::vector<RecordColumn>& channels, std::size_t which) {
   constexpr double tolerated = 1e-4;  // of squares
+  static const std::regex sum(R"(.*(calibrated|total|abs|magn|result|norm).*)");
   const std::vector<double>& values = table.columns[channels[which].index];
-  if (std::ranges::any_of(values, [](double value) { return value < 0.0; })) return false;
+  const bool shifted = std::regex_match(folded(channels[which].channel.name), sum);
+  if (!shifted && std::ranges::any_of(values, [](double value) { return value < 0.0; })) return false;
   for (std::size_t first = 0; first + 1 < channels.size(); ++first)
     for (const std::size_t count : {2u, 3u}) {
       if (first + count > channels.size() || (which >= first && which < first + count)) continue;
-      double left = 0.0, all = 0.0;
+      double left = 0.0, all = 0.0, rest = 0.0, mean = 0.0, rows = 0.0;
       for (std::size_t row = 0; row < values.size(); ++row) {
         double square = 0.0;
         for (std::size_t i = first; i < first + count; ++i)
           square += std::pow(table.columns[channels[i].index][row], 2);
         if (!std::isfinite(square + values[row])) continue;
-        left += std::pow(values[row] - std::sqrt(square), 2), all += values[row] * values[row];
+        const double difference = values[row] - std::sqrt(square);
+        left += difference * difference, all += values[row] * values[row];
+        rest += difference, mean += values[row], rows += 1.0;
       }
       if (all > 0.0 && left < tolerated * all) return true;
+      if (shifted && count == 3 && left - rest * rest / rows < tolerated * (all - mean * mean / rows))
+        return true;
     }
   return false;
 }

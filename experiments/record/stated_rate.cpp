@@ -171,9 +171,9 @@ std::optional<double> rate_of_line(const std::string& line, char decimal) {
       R"((?:fre[cq]uen\w*|cadence|taxa|tasa|velocid?a\w*|vel\.) (?:d'echantillonnage|d'acquisition|de muestreo|)"
       R"(di campionamento|de amostragem))(?![a-z]))"),
       with_unit(
-          R"((?:\b(?:scan|acquisition|logging|recording|output data|output|data)[ _-]*(?:rate|frequency)|^\W*rate|\bsampl(?:ing|ed))\b)"),
+          R"((?:\b(?:scan|acquisition|logging|recording|output data|output|data)[ _-]*(?:rate|frequency)|^\W*rate|^// *update rate(?=: *[0-9.]+ ?hz *$)|\bdate format \S+ at|\bsampl(?:ing|ed))\b)"),
       period(
-          R"(\b(dt|delta[ _]?t|delta[ _]?x(?=[^0-9]*[0-9.]+ ?[mun]?s\b)|[tx]inc(?:r|rement)?|hresolution|sampl\w*[ _-]*(?:interval|period|time)|)"
+          R"(\b(dt|delta[ _]?t|delta[ _]?x(?=[^0-9]*[0-9.]+ ?[mun]?s\b)|[tx]inc(?:r|rement)?|hresolution|sampl\w*[ _-]*(?:interval|period|time|cycle)|)"
           R"(abtast(?:intervall|zeit)|time[ _]?step|intervals of|(?:equal|even) spacing of|(?:equal|even)ly spaced at|dx ?[\[(]s[\])]|(?:recording|logging|time) interval|^\W*interval|)"
           R"(pas de temps|paso de tiempo|(?:periode|pas|interval(?:le|l?o|a)|periodo|pass?o) (?:d'echantillonnage|)"
           R"(de muestreo|di campionamento|de amostragem))(?![a-z]))"),

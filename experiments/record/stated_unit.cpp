@@ -83,14 +83,15 @@ bool is_motion(const std::string& word) {
 // Words that do not say of what else a unit is.
 bool is_plain(const std::string& word) {
   static const std::set<std::string> list{
-      "a",      "all",     "and",         "are",       "amplitude", "channel", "channels", "component",
-      "corr",   "data",    "daten",       "datos",     "de",        "del",     "der",      "des",
-      "die",    "donnees", "du",          "e",         "east",      "en",      "et",       "filtered",
-      "ground", "history", "horizontal",  "in",        "is",        "la",      "las",      "los",
-      "north",  "of",      "processed",   "raw",       "readings",  "record",  "recorded", "records",
-      "sensor", "series",  "signal",      "signals",   "sind",      "son",     "strong",   "the",
-      "time",   "und",     "uncorrected", "corrected", "value",     "values",  "vertical", "x",
-      "y",      "z",       "histories",   "valores",   "registro",  "ns",      "ew",       "ud"};
+      "a",      "all",     "and",         "are",       "amplitude", "channel",  "channels", "component",
+      "corr",   "data",    "daten",       "datos",     "de",        "del",      "der",      "des",
+      "die",    "donnees", "du",          "e",         "east",      "en",       "et",       "filtered",
+      "ground", "history", "horizontal",  "in",        "is",        "la",       "las",      "los",
+      "north",  "of",      "processed",   "raw",       "readings",  "record",   "recorded", "records",
+      "sensor", "series",  "signal",      "signals",   "sind",      "son",      "strong",   "the",
+      "time",   "und",     "uncorrected", "corrected", "value",     "values",   "vertical", "x",
+      "y",      "y-axis",  "z",           "histories", "valores",   "registro", "ns",       "ew",
+      "ud"};
   return list.contains(word) || is_motion(word);
 }
 

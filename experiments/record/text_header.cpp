@@ -132,6 +132,7 @@ class DelimitedText::Body {
   bool has_rows_above() const;              ///< of as many columns, or next to the first rows
   bool has_odd_line_above() const;          ///< between names and rows, one of the rows
   void find_header();                       ///< what names the columns
+  void find_keyed_header();                 ///< where keys stand in front of names and units, or above them
   bool has_names_of_another_width() const;  ///< and no header
   DelimitedText taken() const;              ///< the text at its first row
 
@@ -165,7 +166,12 @@ bool DelimitedText::Body::read_line() {
     if (parted.size() > 1 && all_numbers(parted, ',')) found_.fields_ = parted;
   }
   // Below as many names as rows have cells, those at the end of a row may hold nothing.
-  const auto names_all = [&](const EarlyLine& line) { return line.width == usual_ && !line.rows; };
+  const char between = text_.separator_ == '\0' ? separator_of(found_.line_) : text_.separator_;
+  const auto names_all = [&](const EarlyLine& line) {
+    std::vector<std::string_view> names;
+    split_fields(line.text, between, names);
+    return names.size() == usual_ && !line.rows;
+  };
   if (usual_ > 2 && found_.fields_.size() < usual_ && std::ranges::any_of(lines_, names_all))
     if (auto cells = cells_of(found_.line_, text_.separator_); cells.size() == usual_)
       found_.fields_ = std::move(cells);
@@ -234,7 +240,8 @@ bool DelimitedText::Body::may_name(std::size_t line) const {
   if (width_ == 2 && is_key_and_value(fields_[line]) && !text_.labelled_) return false;
   const bool titles = line > 0 && is_title(trimmed(text)) && lines_[line - 1].text.find(':') != text.npos;
   return !titles && !(is_statement(text) && !text_.labelled_) && text_.named(text, width_).size() == width_ &&
-         (!holds_reading(fields_[line]) || counts_columns(fields_[line]));
+         (!holds_reading(fields_[line]) || counts_columns(fields_[line]) ||
+          numbers_components(fields_[line]));
 }
 
 std::vector<std::string_view> DelimitedText::Body::units_in(std::size_t line) const {
@@ -291,12 +298,33 @@ void DelimitedText::Body::find_header() {
   }
   if (!header_ && nearest && *nearest > 0 && first_ - *nearest == 1 && may_name(*nearest - 1)) --*nearest;
   if (!header_) header_ = nearest;
-  // "TraceName","CH1"; "VUnit","V"; then rows that begin with a blank.
-  for (std::size_t k = 0; k < first_ && fields_[first_][0].empty(); ++k) {
-    const std::string key = folded(unquoted(fields_[k][0]));
-    if (fields_[k].size() == width_ && key == "tracename") header_ = k;
-    if (fields_[k].size() == width_ && key == "vunit") keyed_units_ = k;
+  find_keyed_header();
+}
+
+// "TraceName","CH1"; "VUnit","V"; then rows that begin with a blank. "Title;Tip", "Y unit;g" above times
+// without a name. "*CHANNEL" above names, "*UNIT" above units.
+void DelimitedText::Body::find_keyed_header() {
+  std::optional<std::size_t> names, units, titled_names, titled_units;
+  for (std::size_t k = 0; k < first_; ++k) {
+    const KeyInFront key = key_in_front(fields_[k], width_);
+    if (key == KeyInFront::names) names = k;
+    if (key == KeyInFront::units &&
+        (fields_[first_][0].empty() || are_units({fields_[k].begin() + 1, fields_[k].end()})))
+      units = k;
+    const std::string title = folded(trimmed(lines_[k].text));
+    if (k + 1 == first_ || fields_[k + 1].size() != width_) continue;
+    if (title == "*channel") titled_names = k + 1;
+    if (title == "*unit") titled_units = k + 1;
   }
+  if (titled_names && titled_units) names = titled_names, units = titled_units;
+  const bool blank = fields_[first_][0].empty();
+  if (blank && names) header_ = names;
+  if (blank && units) keyed_units_ = units;
+  if (blank || !names || !units) return;
+  const auto first = header_ ? recognise_column(unquoted(fields_[*header_][0]), "") : std::nullopt;
+  if (first && (first->kind == RecognisedColumn::Kind::time || first->kind == RecognisedColumn::Kind::count))
+    return;  // a header of its own
+  header_ = names, keyed_units_ = units;
 }
 
 bool DelimitedText::Body::has_names_of_another_width() const {
@@ -407,6 +435,7 @@ void DelimitedText::name_columns(std::string_view header, std::size_t line) {
     if (fields_.size() == width_ && (fields_[0] == "1" || fields_[0] == "0")) names_.emplace_back();
   }
   for (const std::string_view field : fields) names_.emplace_back(unquoted(field));
+  if (numbers_components(fields)) name_components(names_);
 }
 
 std::string_view DelimitedText::words_of_comment(std::string_view comment) const {

@@ -112,6 +112,51 @@ void part_stamps(std::string& text) {
   });
 }
 
+/// "I (1000) imu: ax=0.25 ay=1.5" of a microcontroller's log becomes "ms=1000 ax=0.25 ay=1.5", and
+/// "1000: 0.25, 1.5" becomes "1000, 0.25, 1.5".
+void part_log_prefixes(std::string& text) {
+  constexpr std::size_t number = 3;  // characters of "I ("
+  const auto end_of_digits = [](std::string_view line, std::size_t from) {
+    return std::min(line.find_first_not_of("0123456789", from), line.size());
+  };
+  const auto rest_of_log = [&](std::string_view line) -> std::size_t {  // 0: it is no line of such a log
+    if (line.size() < number + 1 || std::string_view("EWIDV").find(line[0]) == line.npos ||
+        line.substr(1, 2) != " (")
+      return 0;
+    const std::size_t end = end_of_digits(line, number), colon = line.find(": ", end);
+    return end > number && line.substr(end).starts_with(") ") && colon != line.npos ? colon + 2 : 0;
+  };
+  const auto rest_of_count = [&](std::string_view line) -> std::size_t {
+    const std::size_t end = end_of_digits(line, 0);
+    return end > 0 && line.substr(end).starts_with(": ") ? end + 2 : 0;
+  };
+  Fields fields;
+  const bool log = holds_across(text, [&](std::string_view line) { return rest_of_log(line) > 0; });
+  if (!log && !holds_across(text, [&](std::string_view line) {
+        const std::size_t rest = rest_of_count(line);
+        split_fields(line.substr(rest), separator_of(line.substr(rest)), fields);
+        return rest > 0 && std::ranges::all_of(fields, is_value);
+      }))
+    return;
+  change_lines(text, [&](char* line, std::size_t length) {
+    const std::string_view whole(line, length);
+    const std::size_t rest = log ? rest_of_log(whole) : rest_of_count(whole);
+    if (rest == 0) return;
+    const char separator = separator_of(whole.substr(rest));
+    split_fields(whole.substr(rest), separator, fields);
+    if (!std::ranges::all_of(fields, is_value)) {
+      std::fill_n(line, length, ' ');  // another line of the log
+      return;
+    }
+    const bool labelled = label_length(fields[0]) > 0;
+    const std::size_t end = end_of_digits(whole, log ? number : 0);
+    if (log) std::fill_n(line, number, ' ');
+    if (log && labelled) std::copy_n("ms=", number, line);
+    std::fill(line + end, line + rest, ' ');
+    line[end] = separator;
+  });
+}
+
 /// A word in a row: no number, none with a unit behind it, and no time; but a number in hexadecimal digits.
 bool is_word(std::string_view field) {
   if (field.empty() || says_missing(field) || parse_stamp(field)) return false;
@@ -306,6 +351,7 @@ bool turn_lines_to_columns(std::string& text) {
 void bring_to_fields(const std::string& file, const RecordFormat& format, std::string& text) {
   write_minus(text);
   part_stamps(text);
+  part_log_prefixes(text);
   join_labels(text);
   if (format.header_lines > 0) return;
   keep_one_sensor(file, text);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -67,11 +68,113 @@ void refuse_other_kinds(const std::filesystem::path& file) {
   if (start == beginning.npos) return;
   const std::string_view text = std::string_view(beginning).substr(start);
   if (text.starts_with("<")) refuse("a page or a document of XML", "export the numbers of the record as CSV");
+}
+
+using Json = nlohmann::ordered_json;
+
+bool begins_as_json(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\xEF\xBB\xBF"), text.size()));
   const std::size_t inside = std::min(text.find_first_not_of(" \t\r\n", 1), text.size());
-  const bool object = text.starts_with("{") && (text.substr(inside).starts_with("\"") ||
-                                                text.substr(inside).starts_with("}"));  // not "{System 1};"
-  if (object || text.starts_with("[{") || text.starts_with("[["))
-    refuse("JSON", "write its arrays as columns of a CSV file");
+  const std::string_view rest = text.substr(inside);
+  return (text.starts_with("{") && (rest.starts_with("\"") || rest.starts_with("}"))) ||  // not "{System 1};"
+         (text.starts_with("[") && (rest.starts_with("{") || rest.starts_with("[")));
+}
+
+/// Of a row, or of all columns: keys of objects within it are joined by points.
+void take_scalars(const Json& value, const std::string& key, std::vector<std::pair<std::string, Json>>& found,
+                  int depth = 0) {
+  constexpr int deepest = 3;
+  if (value.is_object() && depth < deepest)
+    for (const auto& [name, inner] : value.items())
+      take_scalars(inner, key.empty() ? name : key + "." + name, found, depth + 1);
+  else if (!value.is_structured())
+    found.emplace_back(key, value);
+}
+
+std::string cell_of(const Json& value) {
+  std::string cell = value.is_string() ? value.get<std::string>() : value.is_null() ? "" : value.dump();
+  std::ranges::replace_if(
+      cell, [](char c) { return c == ',' || c == '"' || c == '\n' || c == '\r'; }, ' ');
+  return cell;
+}
+
+/// An array of objects, of the names of the first, or of arrays. @returns an empty text where it is none
+std::string text_of_rows(const Json& rows) {
+  if (!rows.is_array() || rows.size() < 2) return {};
+  std::string text;
+  std::vector<std::pair<std::string, Json>> cells;
+  std::vector<std::string> names;
+  for (const Json& row : rows) {
+    cells.clear();
+    if (row.is_array())
+      for (const Json& value : row) take_scalars(value, "", cells, 1);
+    else
+      take_scalars(row, "", cells);
+    if (text.empty() && row.is_object()) {
+      for (const auto& [name, value] : cells) names.push_back(name);
+      for (const std::string& name : names) text += (text.empty() ? "" : ",") + cell_of(name);
+      text += '\n';
+    }
+    for (std::size_t k = 0; k < std::max(names.size(), names.empty() ? cells.size() : 0); ++k) {
+      const auto found = names.empty()
+                             ? cells.begin() + static_cast<std::ptrdiff_t>(k)
+                             : std::ranges::find(cells, names[k], [](const auto& one) { return one.first; });
+      text += (k > 0 ? "," : "") + (found == cells.end() ? "" : cell_of(found->second));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// Names with arrays of equally many numbers, beside them numbers and words for all; or one array of rows.
+std::string text_of_columns(const Json& object, int depth = 0) {
+  constexpr int deepest = 3;
+  std::vector<std::pair<std::string, const Json*>> columns;
+  std::string above;
+  for (const auto& [name, value] : object.items())
+    if (!value.is_structured()) above += name + ": " + cell_of(value) + "\n";
+  for (const auto& [name, value] : object.items()) {
+    if (const std::string inner = text_of_rows(value); !inner.empty() && value[0].is_structured())
+      return above + inner;
+    if (value.is_array() && value.size() > 1 && !value[0].is_structured())
+      columns.emplace_back(name, &value);
+    else if (value.is_object() && columns.empty() && depth < deepest)
+      if (const std::string inner = text_of_columns(value, depth + 1); !inner.empty()) return above + inner;
+  }
+  if (columns.empty()) return {};
+  std::string text = above;
+  for (const auto& [name, values] : columns) {
+    if (values->size() != columns[0].second->size()) return {};
+    text += (&name == &columns[0].first ? "" : ",") + cell_of(name);
+  }
+  for (std::size_t row = 0; row < columns[0].second->size(); ++row) {
+    text += '\n';
+    for (const auto& [name, values] : columns)
+      text += (&name == &columns[0].first ? "" : ",") + cell_of((*values)[row]);
+  }
+  return text + '\n';
+}
+
+/// Its rows or columns as a text with separators; a document, or a line for each row.
+/// @throws InputError where it is neither
+std::string text_of_json(const std::string& file, const std::string& content) {
+  constexpr std::size_t longest = 200'000'000;
+  Json json;
+  if (content.size() < longest) json = Json::parse(content, nullptr, false);
+  if (json.is_discarded()) {
+    json = Json::array();
+    for (const std::string_view line : lines_of(content)) {
+      Json row = Json::parse(line, nullptr, false);
+      if (row.is_object()) json.push_back(std::move(row));  // others are cut, or words of a console
+    }
+  }
+  const std::string text = json.is_object() ? text_of_columns(json) : text_of_rows(json);
+  if (text.empty())
+    throw InputError(
+        {file, 0, 0},
+        "JSON without rows or columns of numbers; expected an array of objects, such as "
+        "[{\"t\": 0, \"acc\": 0.25}], or arrays of equal length: write them as columns of a CSV file");
+  return text;
 }
 
 class DelimitedTextReader final : public RecordReader {
@@ -81,7 +184,11 @@ class DelimitedTextReader final : public RecordReader {
 
   RecordTable read(const std::filesystem::path& file, const RecordFormat& format) const override {
     refuse_other_kinds(file);
-    return table_of_text(file.string(), read_text(file, "a record of numbers in columns"), format);
+    std::string text = read_text(file, "a record of numbers in columns");
+    if (!begins_as_json(text)) return table_of_text(file.string(), std::move(text), format);
+    RecordTable table = table_of_text(file.string(), text_of_json(file.string(), text), format);
+    table.remarks.emplace_back("Read from JSON: its names are those of the columns.");
+    return table;
   }
 };
 

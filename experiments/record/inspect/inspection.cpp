@@ -217,6 +217,23 @@ bool rests(const InspectedChannel& channel) {
   return static_cast<double>(resting) > most_of_it * static_cast<double>(distance.size()) && longest > 2;
 }
 
+/// Of a unit of the library, which other commands show by its symbol.
+bool is_listed(const std::pair<Quantity, double>& unit) {
+  const auto& list = units(unit.first);
+  return std::ranges::find(list, unit.second, &Unit::factor) != list.end();
+}
+
+/// The unit that the column states or, where it states none, the lines above the columns.
+std::optional<std::pair<Quantity, double>> recognised_unit(const RecordTable& table, std::size_t index) {
+  if (!table.by_people) return {};
+  const auto found = table.names.empty() ? std::nullopt : recognised(table, index);
+  const bool named = found && found->states_quantity;
+  if (found && found->kind != RecognisedColumn::Kind::signal) return {};
+  if (named && found->states_unit) return std::pair{found->quantity, found->factor};
+  if (!table.stated_unit || (found && (found->states_unit || !found->reading.empty()))) return {};
+  return named && found->quantity != table.stated_unit->first ? std::nullopt : table.stated_unit;
+}
+
 /// The column's samples, in SI units where its quantity is stated.
 /// @param described by the experiment file; nullptr: not
 InspectedChannel make_channel(const RecordTable& table, std::size_t index,
@@ -231,12 +248,8 @@ InspectedChannel make_channel(const RecordTable& table, std::size_t index,
     channel.quantity = described->quantity, factor = described->factor;
   else if (const auto meaning = stated_meaning(table, index); meaning && meaning->quantity)
     channel.quantity = *meaning->quantity, factor = meaning->factor;
-  else if (const auto found = table.by_people ? recognised(table, index) : std::nullopt;
-           found && found->kind == RecognisedColumn::Kind::signal && found->states_quantity &&
-           found->states_unit &&
-           std::ranges::find(units(found->quantity), found->factor, &Unit::factor) !=
-               units(found->quantity).end())
-    channel.quantity = found->quantity, factor = found->factor;
+  else if (const auto unit = recognised_unit(table, index); unit && is_listed(*unit))
+    channel.quantity = unit->first, factor = unit->second;
   if (channel.quantity) {
     channel.unit = si_unit(*channel.quantity);
     for (const Unit& unit : units(*channel.quantity))

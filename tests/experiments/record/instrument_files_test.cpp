@@ -254,5 +254,119 @@ TEST(Inspection, ReadsWhatOtherCommandsRead) {
   EXPECT_EQ(found.channels.back().name, "AccY");
 }
 
+// A head whose lines have as many words as the rows have cells, the last of which hold nothing.
+TEST(RowOfUnits, CountsWhereAllLinesEndInSeparators) {
+  const std::string body = signal_rows(
+      rows, [](int k, double a) { return fmt::format("{:.4f}\t{:.5f}\t{:.5f}\t", 0.0025 * k, a, 0.5 * a); });
+  const Record machine = recognised(
+      "MTS793|MPT|ENU\n\nStation Name: Frame 1\nTime\tAxial Displacement\tAxial Force\t\nsec\tmm\tkN\t\n" +
+      body);
+  EXPECT_EQ(machine.channels[0].quantity, Quantity::displacement);
+  EXPECT_NEAR(machine.samples(0, 0), 1e-3, 1e-12);
+  EXPECT_EQ(machine.channels[1].quantity, Quantity::force);
+  const Record program = recognised(
+      "DASYLab - V 13.00.00\nDelta : 0.0025 sec.\nNumber of channels : 2\nMeasuring time[s];Tip [g];Middle "
+      "[g];\n" +
+      signal_rows(rows, [](int k, double a) {
+        return fmt::format("{:.4f};{:.5f};{:.5f};", 0.0025 * k, a, 0.5 * a);
+      }));
+  EXPECT_THAT(program.channel_names(), ElementsAre("Tip [g]", "Middle [g]"));
+  EXPECT_NEAR(program.samples(0, 0), standard_gravity, 1e-9);
+}
+
+TEST(Keys, StandInFrontOfNamesAndUnitsOrAboveThem) {
+  const Record analyser =
+      recognised("NVGate\nTitle\tTip\tMid\nX axis\tTime\tTime\nX unit\ts\ts\nY unit\tg\tg\nX\tTr1\tTr2\n" +
+                 two_signals("\t"));
+  EXPECT_THAT(analyser.channel_names(), ElementsAre("Tip", "Mid"));
+  EXPECT_NEAR(analyser.samples(0, 0), standard_gravity, 1e-9);
+  const Record logger =
+      recognised("*CREATOR\nMSR\n*CHANNEL\nTIME;ACC x;ACC y;\n*UNIT\nTIME;g;g;\n*CALIBRATION\n\n*DATA\n" +
+                 signal_rows(rows, [](int k, double a) {
+                   return fmt::format("2026-11-26 10:00:00.{:03};{:.5f};{:.5f};", 10 * k, a, 0.5 * a);
+                 }));
+  EXPECT_THAT(logger.channel_names(), ElementsAre("ACC x", "ACC y"));
+  EXPECT_NEAR(logger.samples(1, 0), 0.5 * standard_gravity, 1e-9);
+}
+
+TEST(Camera, NumbersTheComponentsOfASensor) {
+  const Record record = recognised(
+      "\"cts\",\"date\",\"Accelerometer (z) [m/s2]\",\"1\",\"2\",\"temperature [\xc2\xb0\x43]\"\n" +
+      signal_rows(rows, [](int k, double a) {
+        return fmt::format("{:.2f},2026-11-26T10:00:00.{:03}Z,{:.5f},{:.5f},{:.5f},38.2", 21.5 + 10 * k,
+                           10 * k, a, 0.5 * a, -a);
+      }));
+  EXPECT_THAT(record.channel_names(),
+              ElementsAre("Accelerometer (z) [m/s2]", "1: Accelerometer [m/s2]", "2: Accelerometer [m/s2]"));
+  EXPECT_NEAR(record.interval(), 0.01, 1e-9);
+}
+
+TEST(UnitOfAColumn, StandsBeforeASerialNumberOrANumberAndSaysMoreThanALetter) {
+  const Record pendant =
+      recognised("Time (s),\"X Accel, g (LGR S/N: 12, SEN S/N: 12)\",Acc_mg_2\n" + two_signals());
+  EXPECT_NEAR(pendant.samples(0, 0), standard_gravity, 1e-9);
+  EXPECT_NEAR(pendant.samples(1, 0), 0.5e-3 * standard_gravity, 1e-9);
+  const Record images = recognised("Time_0,u [mm],v [mm]\n" + two_signals());
+  EXPECT_EQ(images.channels[1].quantity, Quantity::displacement);
+  EXPECT_NEAR(images.samples(1, 0), 0.5e-3, 1e-12);
+}
+
+// Names in Shift-JIS, which are no UTF-8.
+TEST(UnitOfAColumn, IsEnoughBesideAWordOfOtherLetters) {
+  const Record record = recognised("\x8e\x9e\x8a\xd4(s),\x89\xc1\x91\xac\x93x(g),B (g)\n" + two_signals());
+  EXPECT_NEAR(record.interval(), 0.0025, 1e-12);
+  EXPECT_NEAR(record.samples(0, 0), standard_gravity, 1e-9);
+}
+
+TEST(Telephone, AddsAMagnitudeWithoutItsMeanAndGravity) {
+  const Record record =
+      recognised("Time(s),AccX,AccY,AccZ,G(calibrated),GRAVITY X (m/s\xc2\xb2)\n" +
+                 signal_rows(rows, [](int k, double a) {
+                   const double b = 0.3 * std::sin(0.2 * k), c = 9.81 + 0.2 * std::cos(0.5 * k);
+                   return fmt::format("{:.4f},{:.6f},{:.6f},{:.6f},{:.6f},{:.5f}", 0.0025 * k, a, b, c,
+                                      std::sqrt(a * a + b * b + c * c) - 9.81, 0.001 * std::cos(0.1 * k));
+                 }));
+  EXPECT_THAT(record.channel_names(), ElementsAre("AccX", "AccY", "AccZ"));
+}
+
+TEST(Console, HasCountersInFrontOfItsRows) {
+  const Record log =
+      recognised("I (312) main_task: Calling app_main()\n" + signal_rows(rows, [](int k, double a) {
+                   return fmt::format("I ({}) imu: ax={:.5f} ay={:.5f}", 1000 + 10 * k, a, -a);
+                 }));
+  EXPECT_THAT(log.channel_names(), ElementsAre("ax", "ay"));
+  EXPECT_NEAR(log.interval(), 0.01, 1e-12);
+  EXPECT_THAT(
+      question_of(signal_rows(
+          rows, [](int k, double a) { return fmt::format("{}: {:.5f}, {:.5f}", 1234 + 10 * k, a, -a); })),
+      HasSubstr("--time 1:ms"));
+}
+
+TEST(Json, IsReadByRowsAndByColumns) {
+  const auto row = [](int k, double a) {
+    return fmt::format("{{\"t\": {:.4f}, \"ax\": {:.5f}}}", 0.0025 * k, a);
+  };
+  const std::string lines = signal_rows(rows, row);
+  std::string document = "[\n" + signal_rows(rows, [&](int k, double a) { return row(k, a) + ","; });
+  document.resize(document.rfind(','));
+  std::string column = "{\"fs\": 400, \"acc_g\": [1.0";
+  for (int k = 1; k < rows; ++k) column += fmt::format(",{:.5f}", std::exp(-0.002 * k) * std::cos(0.08 * k));
+  for (const std::string& text :
+       {lines, document + "]", "{\"data\": " + document + "], \"fs\": 400}", column + "]}"}) {
+    const Record record = recognised(text);
+    EXPECT_EQ(record.size(), rows);
+    EXPECT_NEAR(record.interval(), 0.0025, 1e-9);
+  }
+  EXPECT_NEAR(recognised(column + "]}").samples(0, 0), standard_gravity, 1e-9);
+  EXPECT_THAT(question_of("{\"device\": \"x\", \"items\": {}}"), HasSubstr("an array of objects"));
+}
+
+TEST(Inspection, TakesTheUnitThatStandsAboveTheColumns) {
+  const TemporaryFile file("record.csv", "Units: g\nTime (s),X,Y\n" + two_signals());
+  const Inspection found = inspect(file.path(), {});
+  EXPECT_EQ(found.channels[0].quantity, Quantity::acceleration);
+  EXPECT_NEAR(found.channels[0].samples[0], standard_gravity, 1e-9);
+}
+
 }  // namespace
 }  // namespace beamid::experiments::instrument_files_test

@@ -35,6 +35,9 @@ TEST(StatedRate, TakesARateThatWordsForOneState) {
                                  "Sampling time: 2.5 ms",
                                  "ADC sampling rate: 3200 Hz\nOutput data rate: 400 Hz",
                                  "points at equal intervals of .0025 sec",
+                                 "//  Update Rate: 400.0Hz",
+                                 "File of ActiGraph, date format dd.MM.yyyy at 400 Hz  Filter Normal",
+                                 "\"Sampling cycle\",\"2.5ms\"",
                                  "fs = 400"})
     EXPECT_EQ(question_of(std::string(head) + "\nAcc (g)\n" + rows), "read at 400 Hz") << head;
 }
@@ -44,6 +47,8 @@ TEST(StatedRate, AsksForTheRateWhereTheNumberIsOfSomethingElse) {
   const std::string rows = signal_rows(40, [](int, double a) { return fmt::format("{:.5f}", a); });
   for (const char* const head : {"GPS rate: 10 Hz",
                                  "Update rate: 1 Hz (display)",
+                                 "Update rate: 10 Hz",
+                                 "// Update rate: 10 Hz (display)",
                                  "Trigger rate: 1 Hz",
                                  "Sweep rate: 2 Hz/s",
                                  "Max sample rate: 3200 Hz",

@@ -138,7 +138,7 @@ TEST(SignalFiles, OfOtherKindsAreNamed) {
                                          {"%PDF-1.4\n", "PDF"},
                                          {"TDSm....", "TDMS"},
                                          {"PK\x03\x04..[Content_Types].xml", "save its sheet as CSV"},
-                                         {"{\"t\": [0, 1]}", "JSON"},
+                                         {"{\"t\": {\"unit\": 1}}", "JSON"},
                                          {"<html></html>", "XML"}}) {
     const TemporaryFile file("other", beginning);
     EXPECT_THAT(input_error_of(file, [&] { read_record(file.path(), {}); }), HasSubstr(words));
