@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 
+#include "experiments/identify/tracking/tracking.hpp"
+#include "filters/filter.hpp"
 #include "filters/schemes/matrix_exponential.hpp"
 
 namespace beamid::experiments {
@@ -82,6 +84,20 @@ std::unique_ptr<filters::DiscreteModel> ringing_model(double frequency_hz, doubl
   if (!(frequency_hz > 0 && interval > 0))
     throw std::invalid_argument("frequency_hz and interval; expected positive numbers");
   return std::make_unique<RingingModel>(2.0 * std::numbers::pi * frequency_hz, interval, std::move(noise));
+}
+
+std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise,
+                                                const std::string& method) {
+  return filters::filter_registry().make(method, {},
+                                         ringing_model(ringing.centre_hz, ringing.interval, noise));
+}
+
+filters::Noise ringing_noise(const Ringing& ringing, double noise, double force, double walk) {
+  filters::Noise result{Eigen::MatrixXd::Zero(size, size), Eigen::MatrixXd::Constant(1, 1, noise * noise)};
+  result.process(slope, slope) = force * force * ringing.interval;
+  result.process(stiffness, stiffness) = walk * walk * ringing.interval;
+  result.process(damping, damping) = 0.25 * walk * walk * ringing.interval;
+  return result;
 }
 
 }  // namespace beamid::experiments

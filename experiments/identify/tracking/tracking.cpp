@@ -64,20 +64,6 @@ filters::Measurements Ringing::span(Index first, Index last) const {
   return {time.segment(first, count), signal.segment(first, count).transpose(), {}, {}, 1e-3 * interval};
 }
 
-std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise,
-                                                const std::string& method) {
-  return filters::filter_registry().make(method, {},
-                                         ringing_model(ringing.centre_hz, ringing.interval, noise));
-}
-
-filters::Noise ringing_noise(const Ringing& ringing, double noise, double force, double walk) {
-  filters::Noise result{Eigen::MatrixXd::Zero(size, size), Eigen::MatrixXd::Constant(1, 1, noise * noise)};
-  result.process(slope, slope) = force * force * ringing.interval;
-  result.process(stiffness, stiffness) = walk * walk * ringing.interval;
-  result.process(damping, damping) = 0.25 * walk * walk * ringing.interval;
-  return result;
-}
-
 filters::Gaussian fresh_estimate(const Ringing& ringing, Index first) {
   const Index wanted = std::min(ringing.size(), ringing.cycles(look_ahead));
   const VectorXd ahead = ringing.signal.segment(std::min(first, ringing.size() - wanted), wanted);
