@@ -247,8 +247,8 @@ def compare(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     stamps: str | None = ..., delimiter: str | None = ..., decimal: str | None = ..., header_lines: int | None = ...,
     skip_malformed: bool | None = ..., reader: str | None = ..., out: _Path | None = ..., force: bool | None = ...,
     verbose: bool | None = ..., no_progress: bool | None = ..., **keys: Any) -> Results: ...
-def report(*arguments: _Argument, out: _Path | None = ..., pdf: _Path | None = ..., all: bool | None = ...,
-    force: bool | None = ...) -> str: ...
+def report(*arguments: _Argument, out: _Path | None = ..., pdf: _Path | None = ..., png: _Path | None = ...,
+    all: bool | None = ..., force: bool | None = ...) -> str: ...
 def prepare(*arguments: _Argument, config: _Path | Sequence[_Path] | None = ...,
     column: str | Sequence[str] | None = ..., quantity: str | Sequence[str] | None = ...,
     unit: str | Sequence[str] | None = ..., position: str | Sequence[str] | None = ..., time: str | None = ...,
