@@ -155,16 +155,52 @@ std::string text_of_columns(const Json& object, int depth = 0) {
   return text + '\n';
 }
 
+constexpr std::string_view not_numbers[] = {"NaN", "-Infinity", "Infinity"};
+
+/// NaN and infinities, which Python writes though JSON has none, as null: what was not read.
+std::string with_nulls(const std::string& content) {
+  std::string text;
+  bool quoted = false;
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    if (content[i] == '"' && (i == 0 || content[i - 1] != '\\')) quoted = !quoted;
+    const std::string_view rest = std::string_view(content).substr(i);
+    const auto* const word = std::ranges::find_if(
+        not_numbers, [&](std::string_view one) { return !quoted && rest.starts_with(one); });
+    if (word != std::end(not_numbers)) i += word->size() - 1;
+    text += word != std::end(not_numbers) ? "null" : std::string(1, content[i]);
+  }
+  return text;
+}
+
+/// @throws InputError at the first letter that no document of JSON has there
+Json document_of(const std::string& file, const std::string& content) {
+  try {
+    return Json::parse(content);
+  } catch (const Json::exception& error) {
+    const auto* const parsing = dynamic_cast<const Json::parse_error*>(&error);
+    const std::string_view before =
+        std::string_view(content).substr(0, parsing && parsing->byte > 0 ? parsing->byte - 1 : 0);
+    const std::size_t line = static_cast<std::size_t>(std::ranges::count(before, '\n')) + 1,
+                      column = before.size() - (before.rfind('\n') + 1) + 1;
+    throw InputError({file, line, column}, "JSON is broken here; expected an array of objects or of rows");
+  }
+}
+
 /// Its rows or columns as a text with separators; a document, or a line for each row.
 /// @throws InputError where it is neither
 std::string text_of_json(const std::string& file, const std::string& content) {
   constexpr std::size_t longest = 200'000'000;
-  Json json;
-  if (content.size() < longest) json = Json::parse(content, nullptr, false);
+  Json json(Json::value_t::discarded);
+  if (content.size() < longest) {
+    json = Json::parse(content, nullptr, false);
+    if (json.is_discarded()) json = Json::parse(with_nulls(content), nullptr, false);
+    if (json.is_discarded() && content.find_first_not_of(" \t\r\n") == content.find('['))
+      json = document_of(file, with_nulls(content));
+  }
   if (json.is_discarded()) {
     json = Json::array();
     for (const std::string_view line : lines_of(content)) {
-      Json row = Json::parse(line, nullptr, false);
+      Json row = Json::parse(with_nulls(std::string(line)), nullptr, false);
       if (row.is_object()) json.push_back(std::move(row));  // others are cut, or words of a console
     }
   }

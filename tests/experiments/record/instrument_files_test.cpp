@@ -361,6 +361,21 @@ TEST(Json, IsReadByRowsAndByColumns) {
   EXPECT_THAT(question_of("{\"device\": \"x\", \"items\": {}}"), HasSubstr("an array of objects"));
 }
 
+// Python writes NaN, of which JSON has none: what was not read. Oracle: the sample that is missing.
+TEST(Json, HoldsNotANumberAndItsErrorsHaveAPlace) {
+  std::string document = "[\n";
+  for (int k = 0; k < rows; ++k)
+    document += fmt::format("{{\"t\": {:.4f}, \"NaN acc\": {}}},\n", 0.0025 * k,
+                            k == 7 ? "NaN" : fmt::format("{:.5f}", std::cos(0.08 * k)));
+  const std::string whole = document.substr(0, document.rfind(',')) + "]";
+  RecordFormat gaps;
+  gaps.malformed = MalformedRows::as_missing;
+  const Record record = recognised(whole, gaps);
+  ASSERT_EQ(record.size(), rows);
+  EXPECT_TRUE(std::isnan(record.samples(0, 7)));
+  EXPECT_THAT(question_of(document + "{\"t\": }]"), HasSubstr(fmt::format("txt:{}:7: JSON", rows + 2)));
+}
+
 TEST(Inspection, TakesTheUnitThatStandsAboveTheColumns) {
   const TemporaryFile file("record.csv", "Units: g\nTime (s),X,Y\n" + two_signals());
   const Inspection found = inspect(file.path(), {});
