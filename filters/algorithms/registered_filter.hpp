@@ -42,7 +42,7 @@ class Observed {
     model_.output_jacobian(z, *input_, jacobian);
   }
 
-  // The same for sizes that the compiler knows, which the model does not: a few numbers are copied.
+  // The same for sizes fixed at compile time. Models have dynamic sizes: a few numbers are copied.
   template <int N>
   void linearised_transition(const Vector<double, N>& z, Vector<double, N>& next,
                              Matrix<double, N>& jacobian) {
@@ -220,7 +220,7 @@ class RegisteredFilter final : public Filter {
       sound = sound && (variances >= 0.0).all() && variances.allFinite();
     }
     if (!sound) [[unlikely]]
-      check_finite(estimate());  // which forgives what rounding leaves below zero
+      check_finite(estimate());  // which accepts rounding errors below zero
   }
 
   Observed at_step_;

@@ -11,7 +11,7 @@ std::unique_ptr<Filter> extended_kalman(std::unique_ptr<DiscreteModel> model) {
 }
 
 // Of one mode, K and C, with the sensor's bias or without it, seen by one or two channels, and of one that is
-// tracked (7 states) the sizes are known to the compiler, which unrolls the products.
+// tracked (7 states) the sizes are fixed at compile time, and products are unrolled.
 template <int N>
 std::unique_ptr<Filter> of_one_mode(std::unique_ptr<DiscreteModel> model) {
   const std::size_t outputs = model->output_labels().size();

@@ -116,10 +116,9 @@ bool Passes::filter() {
     for (int pass = 1; pass <= settings_.passes; ++pass)
       if (!filter_once()) return false;
     // `identify` answers: of a record that its model does not make entirely, a filter needs more passes.
-    constexpr double unsettled = 5.0;  // deviations, as of the objection
     const bool answers = settings_.keep == filters::Keep::all_estimates;
     for (int more = 0; more < settings_.passes; ++more) {
-      if (!answers || !is_linear_and_driven() || !(last_move_ > unsettled)) break;
+      if (!answers || !is_linear_and_driven() || !(last_move_ > unsettled_move)) break;
       if (!filter_once()) return false;
     }
     return true;

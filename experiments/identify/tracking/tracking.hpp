@@ -31,7 +31,7 @@ struct Ringing {
   filters::Measurements span(Eigen::Index first, Eigen::Index last) const;
 };
 
-/// An extended Kalman filter on the ringing model.
+/// A filter on the ringing model, registered under this name.
 std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise,
                                                 const std::string& method = "ekf");
 

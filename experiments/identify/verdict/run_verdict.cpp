@@ -158,20 +158,19 @@ void judge_against_modal_analysis(const RunContext& context, ComparedRun& run) {
 // does not make the record the filter's own deviations are too small: a move within the reported ones is no
 // contradiction.
 void judge_settling(ComparedRun& run) {
-  constexpr double many = 5.0;
   double least_widened = std::numeric_limits<double>::infinity();
   for (std::size_t j = 0; j < run.parameters.size(); ++j)
     if (const double formal = formal_deviation(run, j); !run.unknowns[j].nuisance && formal > 0.0)
       least_widened = std::min(least_widened, run.parameters[j].estimate.deviation / formal);
   const bool is_within = std::isfinite(least_widened) && run.last_move < settled_move * least_widened;
-  if (!(run.last_move > many) || is_within) return;
+  if (!(run.last_move > unsettled_move) || is_within) return;
   const std::string moved =
       fmt::format("the last pass moved an unknown by {:.2g} standard deviations", run.last_move);
   const Objection objection{"not_settled",
                             "NOT SETTLED: " + moved +
                                 ". The estimates are not to be relied on; expected more passes "
                                 "([compare] passes) or nearer initial estimates.",
-                            run.last_move, many};
+                            run.last_move, unsettled_move};
   if (run.answers())
     run.contradict("the passes have not settled: " + moved, objection);
   else

@@ -8,7 +8,8 @@
 
 namespace beamid::experiments {
 
-constexpr double settled_move = 1.0;  ///< of an unknown by the last pass, at most, in standard deviations
+constexpr double settled_move = 1.0;    ///< of an unknown by the last pass, at most, in standard deviations
+constexpr double unsettled_move = 5.0;  ///< likewise: passes that move further have found nothing yet
 
 /// Status, intervals and warnings of a run, the same whatever command asked for it.
 ///

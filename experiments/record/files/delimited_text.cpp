@@ -193,9 +193,11 @@ std::string text_of_json(const std::string& file, const std::string& content) {
   Json json(Json::value_t::discarded);
   if (content.size() < longest) {
     json = Json::parse(content, nullptr, false);
-    if (json.is_discarded()) json = Json::parse(with_nulls(content), nullptr, false);
-    if (json.is_discarded() && content.find_first_not_of(" \t\r\n") == content.find('['))
-      json = document_of(file, with_nulls(content));
+    if (json.is_discarded()) {
+      const std::string text = with_nulls(content);
+      const bool is_document = text.find_first_not_of(" \t\r\n") == text.find('[');
+      json = is_document ? document_of(file, text) : Json::parse(text, nullptr, false);
+    }
   }
   if (json.is_discarded()) {
     json = Json::array();
