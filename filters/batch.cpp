@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -77,54 +78,109 @@ std::string batch_instructions() {
   return algorithms::avx2_is_usable() ? "avx2" : "baseline";
 }
 
+namespace {
+
+// The log-likelihood of a lane that has run.
+double log_likelihood_of(const TrialGroup::Lane& done) {
+  const double log_root = std::log(done.mantissa) + static_cast<double>(done.exponent) * std::numbers::ln2;
+  const double constant = static_cast<double>(done.measured) * std::log(2.0 * std::numbers::pi);
+  return -0.5 * (done.sum_of_squares + 2.0 * log_root + constant);
+}
+
+// Runs `count` trials in groups of as many as there are lanes.
+// @param group what they have in common
+// @param lane_of(i) where the numbers of trial i lie @param take(i, lane) what came of it
+template <class LaneOf, class Take>
+void run_in_groups(TrialGroup& group, std::size_t count, const LaneOf& lane_of, const Take& take) {
+  const std::size_t lanes = algorithms::avx2_is_usable() ? 4 : 2;
+  for (std::size_t first = 0; first < count; first += lanes) {
+    const std::size_t used = std::min(lanes, count - first);
+    for (std::size_t lane = lanes; lane-- > 0;)  // those without a trial repeat the last one
+      group.lanes[lane] = lane_of(first + std::min(lane, used - 1));
+    run_any(group);
+    for (std::size_t lane = 0; lane < used; ++lane) take(first + lane, group.lanes[lane]);
+  }
+}
+
+}  // namespace
+
 std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vector<LaneTrial>& trials,
                                    Start start) {
   check(kind, trials);
+  if (trials.empty()) return {};
   const MatrixXd process =
       kind.process_noise.size() > 0 ? kind.process_noise : MatrixXd(MatrixXd::Zero(4, 4));
   std::vector<TrialResult> results(trials.size());
-  const std::size_t lanes = algorithms::avx2_is_usable() ? 4 : 2;
-  for (std::size_t first = 0; first < trials.size(); first += lanes) {
-    MatrixXd covariances[TrialGroup::most];
-    TrialGroup group{kind.mass,
-                     kind.interval,
-                     static_cast<int>(kind.observed.size()),
-                     {},
-                     kind.output_noise.data(),
-                     process.data(),
-                     trials[0].outputs.cols(),
-                     start == Start::one_interval_before,
-                     kind.forward_euler,
-                     {}};
-    std::copy(kind.observed.begin(), kind.observed.end(), group.observed);
-    const std::size_t used = std::min(lanes, trials.size() - first);
-    for (std::size_t lane = lanes; lane-- > 0;) {  // those without a trial repeat the last one
-      const std::size_t i = first + std::min(lane, used - 1);
-      covariances[lane] = with_covariance(trials[i].initial).covariance;
-      if (results[i].last.mean.size() == 0) results[i].last = {Eigen::VectorXd(4), MatrixXd(4, 4)};
-      group.lanes[lane] = {trials[i].outputs.data(),
-                           trials[i].initial.mean.data(),
-                           covariances[lane].data(),
-                           results[i].last.mean.data(),
-                           results[i].last.covariance.data(),
-                           0.0,
-                           1.0,
-                           0,
-                           0,
-                           -1};
-    }
-    run_any(group);
-    for (std::size_t lane = 0; lane < used; ++lane) {
-      const TrialGroup::Lane& done = group.lanes[lane];
-      const double log_root =
-          std::log(done.mantissa) + static_cast<double>(done.exponent) * std::numbers::ln2;
-      const double constant = static_cast<double>(done.measured) * std::log(2.0 * std::numbers::pi);
-      TrialResult& result = results[first + lane];
-      result.log_likelihood = -0.5 * (done.sum_of_squares + 2.0 * log_root + constant);
-      if (done.failed >= 0) result.failed = done.failed;
-    }
+  std::vector<MatrixXd> covariances;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    covariances.push_back(with_covariance(trials[i].initial).covariance);
+    results[i].last = {Eigen::VectorXd(4), MatrixXd(4, 4)};
   }
+  using Motion = TrialGroup::Motion;
+  TrialGroup group{kind.forward_euler ? Motion::forward_euler : Motion::exact,
+                   kind.mass,
+                   0.0,
+                   kind.interval,
+                   static_cast<int>(kind.observed.size()),
+                   {},
+                   trials[0].outputs.cols(),
+                   start == Start::one_interval_before,
+                   {}};
+  std::copy(kind.observed.begin(), kind.observed.end(), group.observed);
+  const auto lane_of = [&](std::size_t i) {
+    return TrialGroup::Lane{trials[i].outputs.data(),
+                            trials[i].initial.mean.data(),
+                            covariances[i].data(),
+                            process.data(),
+                            kind.output_noise.data(),
+                            results[i].last.mean.data(),
+                            results[i].last.covariance.data(),
+                            0.0,
+                            1.0,
+                            0,
+                            0,
+                            -1};
+  };
+  run_in_groups(group, trials.size(), lane_of, [&](std::size_t i, const TrialGroup::Lane& done) {
+    results[i].log_likelihood = log_likelihood_of(done);
+    if (done.failed >= 0) results[i].failed = done.failed;
+  });
   return results;
+}
+
+std::vector<double> ringing_log_likelihoods(const RingingTrials& kind, const std::vector<Noise>& noises) {
+  require(kind.frequency > 0.0 && kind.interval > 0.0, "frequency or interval", "not positive",
+          "more than 0");
+  require(kind.initial.mean.size() == 5, "size of the initial mean", std::to_string(kind.initial.mean.size()),
+          "5");
+  require_covariance(kind.initial.covariance, 5, "initial covariance");
+  for (const Noise& noise : noises) {
+    require_covariance(noise.process, 5, "process noise");
+    require_covariance(noise.output, 1, "output noise");
+  }
+  TrialGroup group{
+      TrialGroup::Motion::ringing, 0.0, kind.frequency, kind.interval, 1, {}, kind.signal.size(), false, {}};
+  Eigen::VectorXd mean(5);  // where each ended, which nobody asks
+  MatrixXd covariance(5, 5);
+  const auto lane_of = [&](std::size_t i) {
+    return TrialGroup::Lane{kind.signal.data(),
+                            kind.initial.mean.data(),
+                            kind.initial.covariance.data(),
+                            noises[i].process.data(),
+                            noises[i].output.data(),
+                            mean.data(),
+                            covariance.data(),
+                            0.0,
+                            1.0,
+                            0,
+                            0,
+                            -1};
+  };
+  std::vector<double> result(noises.size());
+  run_in_groups(group, noises.size(), lane_of, [&](std::size_t i, const TrialGroup::Lane& done) {
+    result[i] = done.failed >= 0 ? -std::numeric_limits<double>::infinity() : log_likelihood_of(done);
+  });
+  return result;
 }
 
 }  // namespace beamid::filters

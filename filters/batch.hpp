@@ -43,6 +43,20 @@ struct TrialResult {
 std::vector<TrialResult> run_batch(const OscillatorTrials& kind, const std::vector<LaneTrial>& trials,
                                    Start start = Start::at_first_sample);
 
+/// One record of a ringing mode at even stamps, for filters that differ in their noise alone: the model
+/// RingingOscillator of algorithms/oscillator.hpp, its state [y, y', k, xi, o].
+struct RingingTrials {
+  double frequency = 0.0;  ///< w_0 [rad/s]
+  double interval = 0.0;   ///< between samples [s]
+  Eigen::VectorXd signal;  ///< (N); NaN: not measured
+  Gaussian initial;        ///< about the first sample: mean (5) and covariance (5 x 5)
+};
+
+/// ln p(signal) of the extended Kalman filter under each of these noises, Q (5 x 5) and R (1 x 1), side by
+/// side: what `ekf` gives for each alone, to rounding; minus infinity where it fails.
+/// @throws std::invalid_argument as run_batch() does
+std::vector<double> ringing_log_likelihoods(const RingingTrials& kind, const std::vector<Noise>& noises);
+
 /// Instructions that run_batch() uses on this processor: "avx2" or "baseline".
 std::string batch_instructions();
 

@@ -1,5 +1,6 @@
 #include "filters/noise_estimation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -18,6 +19,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double difference = 3e-4;       // in log s: truncation 1e-8 of the curvature, rounding 1e-6 of it
 constexpr double negligible_gain = 1e-9;  // of the log-likelihood
+constexpr double rounding = 1e-13;        // of the log-likelihood, as a share: a gain below it cannot be seen
 constexpr double longest = 1.5;           // step in log s
 
 struct Quadratic {
@@ -29,20 +31,26 @@ struct Quadratic {
 Quadratic differences(NoiseLevels& levels, const VectorXd& x, double centre) {
   const Index q = x.size();
   Quadratic result{VectorXd(q), MatrixXd(q, q)};
-  VectorXd above(q), below(q);
-  const auto at = [&](Index i, double a, Index j, double b) {
-    VectorXd point = x;
-    point[i] += a * difference;
-    point[j] += b * difference;
-    return levels.log_likelihood(point);
+  std::vector<VectorXd> places;  // above and below x in entry i, then in entries i and j together
+  const auto add = [&](Index i, Index j) {
+    for (const double side : {difference, -difference}) {
+      places.push_back(x);
+      places.back()[i] += side;
+      if (j != i) places.back()[j] += side;
+    }
   };
+  for (Index i = 0; i < q; ++i)
+    for (Index j = i; j >= 0; --j) add(i, j);
+  const std::vector<double> values = levels.log_likelihoods(places);
+  auto next = values.begin();
+  VectorXd above(q), below(q);
   for (Index i = 0; i < q; ++i) {
-    above[i] = at(i, 1.0, i, 0.0);
-    below[i] = at(i, -1.0, i, 0.0);
+    above[i] = *next++;
+    below[i] = *next++;
     result.slope[i] = (above[i] - below[i]) / (2.0 * difference);
     result.curvature(i, i) = -(above[i] - 2.0 * centre + below[i]) / (difference * difference);
-    for (Index j = 0; j < i; ++j) {
-      const double both = at(i, 1.0, j, 1.0) + at(i, -1.0, j, -1.0);
+    for (Index j = i; j-- > 0;) {
+      const double one = *next++, other = *next++, both = one + other;
       result.curvature(i, j) = result.curvature(j, i) =
           -(both - above[i] - below[i] - above[j] - below[j] + 2.0 * centre) /
           (2.0 * difference * difference);
@@ -97,7 +105,8 @@ void ascend(NoiseLevels& levels, const NoiseSettings& settings, VectorXd& x, Noi
     const Quadratic local = differences(levels, x, value);
     if (!local.slope.allFinite() || !local.curvature.allFinite()) break;
     const VectorXd step = newton_step(local, gain);
-    if (step.cwiseAbs().maxCoeff() < settings.tolerance || gain < negligible_gain) {
+    const double unseen = std::max(negligible_gain, rounding * std::abs(value));
+    if (step.cwiseAbs().maxCoeff() < settings.tolerance || gain < unseen) {
       result.status = NoiseStatus::converged;
       return;
     }
@@ -212,6 +221,8 @@ NoiseLevels::NoiseLevels(const NoisyFilterFactory& make_filter, const Gaussian& 
   check_groups(outputs_, settings.guess.output, measurements.output_deviations.size() > 0, "output");
   check_groups(settings.process_groups, settings.guess.process, false, "state");
   if (settings.method == NoiseMethod::expectation_maximisation) check_diagonal();
+  if (settings.likelihoods && (settings.initial_level || measurements.output_deviations.size() > 0))
+    throw std::invalid_argument("likelihoods of noises, and a level of something else; expected one of them");
   size_ = static_cast<Index>(outputs_.size() + settings.process_groups.size()) + settings.initial_level;
 }
 
@@ -254,14 +265,25 @@ Measurements NoiseLevels::measurements(const VectorXd& x) const {
   return result;
 }
 
-double NoiseLevels::log_likelihood(const VectorXd& x) {
-  ++runs_;
-  const std::unique_ptr<Filter> filter = make_filter_(noise(x));
+std::vector<double> NoiseLevels::log_likelihoods(const std::vector<VectorXd>& places) {
+  runs_ += static_cast<int>(places.size());
   const bool own = measurements_.output_deviations.size() > 0;
-  const FilterRun result =
-      own ? run(*filter, initial(x), measurements(x)) : run(*filter, initial(x), measurements_);
-  return result.failure || !std::isfinite(result.log_likelihood) ? -std::numeric_limits<double>::infinity()
-                                                                 : result.log_likelihood;
+  std::vector<double> result;
+  if (settings_.likelihoods) {
+    std::vector<Noise> noises;
+    for (const VectorXd& x : places) noises.push_back(noise(x));
+    result = settings_.likelihoods(noises);
+  } else {
+    for (const VectorXd& x : places) {
+      const std::unique_ptr<Filter> filter = make_filter_(noise(x));
+      const FilterRun one =
+          own ? run(*filter, initial(x), measurements(x)) : run(*filter, initial(x), measurements_);
+      result.push_back(one.failure ? std::numeric_limits<double>::quiet_NaN() : one.log_likelihood);
+    }
+  }
+  for (double& value : result)
+    if (!std::isfinite(value)) value = -std::numeric_limits<double>::infinity();
+  return result;
 }
 
 // One iteration of expectation-maximisation [shumway1982]. With means over the samples, and expectations

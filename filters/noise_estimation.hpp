@@ -13,6 +13,9 @@ namespace beamid::filters {
 /// The filter that is to be used, on its model with this noise.
 using NoisyFilterFactory = std::function<std::unique_ptr<Filter>(const Noise&)>;
 
+/// ln p(y) of a record, by that filter, under each of several noises; minus infinity where it fails.
+using NoisyLikelihoods = std::function<std::vector<double>(const std::vector<Noise>&)>;
+
 /// By which method the levels are found.
 enum class NoiseMethod {
   maximum_likelihood,       ///< Newton's method on the filter's log-likelihood
@@ -29,8 +32,11 @@ struct NoiseSettings {
   NoiseMethod method = NoiseMethod::maximum_likelihood;
   int max_iterations = 200;
   /// Converged when the next step would change no level by more than this share, or raise the log-likelihood
-  /// by less than 1e-9.
+  /// by less than 1e-9 or, by maximum likelihood, than its rounding, 1e-13 of it.
   double tolerance = 1e-6;
+  /// Where the likelihoods of this very record and initial estimate can be had at less cost than by runs of
+  /// the filter, several side by side; empty: by runs. Maximum likelihood with no initial level only.
+  NoisyLikelihoods likelihoods = {};
 };
 
 enum class NoiseStatus { converged, iterations_exhausted, failed };
@@ -76,7 +82,9 @@ class NoiseLevels {
   Measurements measurements(const Eigen::VectorXd& x) const;
 
   /// log p(y); minus infinity where the filter fails.
-  double log_likelihood(const Eigen::VectorXd& x);
+  double log_likelihood(const Eigen::VectorXd& x) { return log_likelihoods({x}).front(); }
+  /// The same of several x, side by side where NoiseSettings::likelihoods can.
+  std::vector<double> log_likelihoods(const std::vector<Eigen::VectorXd>& places);
   /// The levels that maximise the expected log-likelihood of states and outputs, given the smoothed states
   /// [shumway1982]; sets the log-likelihood of x. Nothing where the filter fails.
   Eigen::VectorXd expectation_maximisation(const Eigen::VectorXd& x, double& log_likelihood);

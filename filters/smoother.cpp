@@ -88,28 +88,44 @@ Estimate as_factor(const Gaussian& estimate) {
   return {estimate.mean, factor_of(estimate)};
 }
 
-std::vector<BackwardStep> backward_steps(const FilterRun& run, DiscreteModel& model,
-                                         const Measurements& measurements, Smoother& smoother) {
-  if (run.filtered.empty())
-    throw std::invalid_argument("the run holds no filtered estimates; expected one that keeps all");
-  const auto reached = static_cast<Index>(run.filtered.size());
-  if (reached > measurements.size() || run.innovations.cols() != measurements.size())
-    throw std::invalid_argument("the run is of " + std::to_string(run.innovations.cols()) +
-                                " samples; expected the " + std::to_string(measurements.size()) +
-                                " of the record");
-  const IntervalKept kept(model);
-  SampleClock clock(model.interval(), measurements.time_resolution);
-  clock.start(measurements.time[0]);
-  std::vector<BackwardStep> steps;
-  VectorXd input;
-  for (Index k = 0; k + 1 < reached; ++k) {
-    model.set_interval(clock.advance(measurements.time[k + 1]));
-    if (measurements.inputs.size() > 0) input = measurements.inputs.col(k);
-    const Gaussian& filtered = run.filtered[static_cast<std::size_t>(k)];
-    steps.emplace_back(filtered, smoother.spread(model, filtered, input), model.process_noise());
+// The steps back along a run, each made when it is asked for: those of a record of a million samples together
+// are gigabytes.
+class BackwardSteps {
+ public:
+  BackwardSteps(const FilterRun& run, DiscreteModel& model, const Measurements& measurements,
+                Smoother& smoother)
+      : run_(run), model_(model), measurements_(measurements), smoother_(smoother), kept_(model) {
+    if (run.filtered.empty())
+      throw std::invalid_argument("the run holds no filtered estimates; expected one that keeps all");
+    const auto reached = static_cast<Index>(run.filtered.size());
+    if (reached > measurements.size() || run.innovations.cols() != measurements.size())
+      throw std::invalid_argument("the run is of " + std::to_string(run.innovations.cols()) +
+                                  " samples; expected the " + std::to_string(measurements.size()) +
+                                  " of the record");
+    SampleClock clock(model.interval(), measurements.time_resolution);
+    clock.start(measurements.time[0]);
+    for (Index k = 0; k + 1 < reached; ++k) intervals_.push_back(clock.advance(measurements.time[k + 1]));
   }
-  return steps;
-}
+
+  std::size_t size() const { return intervals_.size(); }
+
+  /// From sample k + 1 to sample k.
+  BackwardStep operator[](std::size_t k) {
+    model_.set_interval(intervals_[k]);
+    if (measurements_.inputs.size() > 0) input_ = measurements_.inputs.col(static_cast<Index>(k));
+    const Gaussian& filtered = run_.filtered[k];
+    return {filtered, smoother_.spread(model_, filtered, input_), model_.process_noise()};
+  }
+
+ private:
+  const FilterRun& run_;
+  DiscreteModel& model_;
+  const Measurements& measurements_;
+  Smoother& smoother_;
+  IntervalKept kept_;
+  std::vector<double> intervals_;  // [s]
+  VectorXd input_;
+};
 
 }  // namespace
 
@@ -121,14 +137,15 @@ SmootherRegistry& smoother_registry() {
 SmoothedRun smooth(const FilterRun& run, DiscreteModel& model, const Measurements& measurements,
                    const std::string& method, const Options& options, Smooth what) {
   const auto smoother = smoother_registry().make(method, options);
-  const std::vector<BackwardStep> steps = backward_steps(run, model, measurements, *smoother);
+  BackwardSteps steps(run, model, measurements, *smoother);
   SmoothedRun result;
   result.estimates = run.filtered;
   if (what == Smooth::states_and_noises) result.noises.resize(steps.size());
   Estimate estimate = as_factor(run.filtered.back());
   for (std::size_t k = steps.size(); k-- > 0;) {
-    if (what == Smooth::states_and_noises) result.noises[k] = steps[k].noise(estimate).as(run.filtered[k]);
-    estimate = steps[k].state(estimate);
+    const BackwardStep step = steps[k];
+    if (what == Smooth::states_and_noises) result.noises[k] = step.noise(estimate).as(run.filtered[k]);
+    estimate = step.state(estimate);
     result.estimates[k] = estimate.as(run.filtered[k]);
   }
   return result;
@@ -139,7 +156,9 @@ std::vector<Gaussian> fixed_lag_smooth(const FilterRun& run, DiscreteModel& mode
                                        const Options& options) {
   if (lag < 0) throw std::invalid_argument("lag is " + std::to_string(lag) + "; expected at least 0");
   const auto smoother = smoother_registry().make(method, options);
-  const std::vector<BackwardStep> steps = backward_steps(run, model, measurements, *smoother);
+  BackwardSteps made(run, model, measurements, *smoother);
+  std::vector<BackwardStep> steps;  // each is taken `lag` times
+  for (std::size_t k = 0; k < made.size(); ++k) steps.push_back(made[k]);
   std::vector<Gaussian> result = run.filtered;
   for (std::size_t k = 0; k < steps.size() && lag > 0; ++k) {
     const std::size_t last = std::min(k + static_cast<std::size_t>(lag), steps.size());

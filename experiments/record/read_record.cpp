@@ -388,8 +388,9 @@ void check_rows(RecordTable& table, const std::vector<Used>& used, std::optional
 
 Record read_record(const std::filesystem::path& file, const RecordFormat& format) {
   if (format.files.size() > 1) {
-    const Record joined = joined_record(format);
-    return format.window ? cut(joined, format, file.string()) : joined;
+    Record joined = joined_record(format);
+    if (!format.window) return joined;
+    return cut(joined, format, file.string());
   }
   RecordTable table = read_table(file, format);
   RecordColumns columns = find_columns(table, format);
@@ -430,7 +431,8 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
   for (const RecordColumn& column : columns.channels)
     names.push_back(column.index < table.names.size() ? table.names[column.index] : "");
   take_places(file, names, record);
-  return format.window ? cut(record, format, table.file) : record;
+  if (!format.window) return record;
+  return cut(record, format, table.file);
 }
 
 }  // namespace beamid::experiments

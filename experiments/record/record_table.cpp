@@ -57,15 +57,16 @@ void PrintedPrecision::add(std::string_view token) {
   int decimals = 0, digits = 0, exponent = 0;
   bool point = false;
   for (std::size_t i = 0; i < token.size(); ++i) {
-    if (token[i] == '.') {
+    const char letter = token[i];
+    if (letter >= '0' && letter <= '9') {
+      decimals += point ? 1 : 0;
+      digits += digits > 0 || letter != '0' ? 1 : 0;
+    } else if (letter == '.') {
       point = true;
-    } else if (std::string_view("eEdD").find(token[i]) != std::string_view::npos) {
+    } else if (letter == 'e' || letter == 'E' || letter == 'd' || letter == 'D') {
       const std::size_t start = i + (token.substr(i + 1).starts_with('+') ? 2 : 1);
       std::from_chars(token.data() + start, token.data() + token.size(), exponent);
       break;
-    } else if (token[i] >= '0' && token[i] <= '9') {
-      decimals += point ? 1 : 0;
-      digits += digits > 0 || token[i] != '0' ? 1 : 0;
     }
   }
   decimals_ = std::max(decimals_, decimals - exponent);
@@ -196,6 +197,7 @@ InputError RecordTable::fault(std::size_t row, std::size_t column) const {
 }
 
 void RecordTable::keep(const std::vector<bool>& kept) {
+  if (std::find(kept.begin(), kept.end(), false) == kept.end()) return;
   const auto compact = [&](auto& values) {
     std::size_t next = 0;
     for (std::size_t i = 0; i < values.size(); ++i)

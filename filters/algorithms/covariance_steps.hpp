@@ -13,6 +13,9 @@ template <class Scalar, int N, int P>
 class CovarianceSteps {
  public:
   /// C becomes J C J^T, in its lower triangle and, but for rounding, above.
+  /// @tparam moving where it is less than N, rows of J from there on are those of the identity: only so many
+  /// rows and columns of C change, and nothing is lost but products by zero and one
+  template <int moving = N>
   void carry(const Matrix<Scalar, N>& tangent, Matrix<Scalar, N>& covariance) {
     if constexpr (N == Eigen::Dynamic) {
       if (tangent.rows() > small && entries_.take(tangent)) {
@@ -22,6 +25,18 @@ class CovarianceSteps {
         covariance.swap(work_);
         return;
       }
+    }
+    if constexpr (moving < N) {
+      constexpr int held = N - moving;
+      const Matrix<Scalar, moving, N> rows = tangent.template topRows<moving>();
+      Matrix<Scalar, moving, N> carried;
+      Matrix<Scalar, moving> corner;
+      multiply(rows, covariance, carried);
+      multiply_transposed(carried, rows, corner);
+      covariance.template topLeftCorner<moving, moving>() = corner;
+      covariance.template topRightCorner<moving, held>() = carried.template rightCols<held>();
+      covariance.template bottomLeftCorner<held, moving>() = carried.template rightCols<held>().transpose();
+      return;
     }
     multiply(tangent, covariance, work_);
     multiply_transposed(work_, tangent, covariance);

@@ -72,4 +72,10 @@ template <class Scalar>
   return damped_nearby(z, delta);
 }
 
+/// e^x, for scalars that the standard library has no function for.
+template <class Scalar>
+[[gnu::always_inline]] inline Scalar exponential(const Scalar& x) {
+  return damped_entire_functions<Scalar>(0.0, -x).c;
+}
+
 }  // namespace beamid::filters::algorithms

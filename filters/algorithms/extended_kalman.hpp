@@ -24,7 +24,10 @@ class ExtendedKalman {
   void predict(Model& model) {
     model.linearised_transition(mean, next_, tangent_);
     mean.swap(next_);
-    steps_.carry(tangent_, covariance);
+    if constexpr (requires { Model::moving; })
+      steps_.template carry<Model::moving>(tangent_, covariance);
+    else
+      steps_.carry(tangent_, covariance);
     if (model.process_noise().size() > 0) covariance += model.process_noise();
     mirror(covariance);
   }

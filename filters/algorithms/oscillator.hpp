@@ -24,6 +24,8 @@ namespace beamid::filters::algorithms {
 template <class Scalar, int P>
 class Oscillator {
  public:
+  static constexpr int states = 4;
+  static constexpr int moving = 2;  ///< the others are constants
   using State = Vector<Scalar, 4>;
 
   /// @param mass M [kg]. @param interval dt [s]. @param process_noise Q per step. @param output_noise R.
@@ -162,6 +164,70 @@ class EulerOscillator : public Oscillator<Scalar, P> {
     jacobian(1, 2) = -share * x;
     jacobian(1, 3) = -share * v;
   }
+};
+
+// One mode as any sensor shows it, its stiffness and damping ratio relative to what they are expected to be:
+//
+//     y'' + 2 xi w y' + w^2 y = 0,   w^2 = w_0^2 e^k,   state [y, y', k, xi, o],   observed: y + o
+//
+// Moved as the oscillator of M = 1, K = w^2 and C = 2 xi w, whose derivatives give those by k and by xi:
+//
+//     d/dk = w^2 d/dK + xi w d/dC,    d/dxi = 2 w d/dC
+
+/// A model of 5 states and one output.
+template <class Scalar>
+class RingingOscillator {
+ public:
+  static constexpr int states = 5;
+  static constexpr int moving = 2;
+  using State = Vector<Scalar, 5>;
+
+  /// @param w0 [rad/s] @param interval [s] @param process_noise Q per step @param output_noise R
+  RingingOscillator(double w0, double interval, const Matrix<Scalar, 5>& process_noise,
+                    const Matrix<Scalar, 1>& output_noise)
+      : w0_(w0),
+        process_noise_(process_noise),
+        output_noise_(output_noise),
+        oscillator_(1.0, interval, {Quantity::displacement}, Matrix<Scalar, 4>::Constant(Scalar(0.0)),
+                    output_noise) {}
+
+  void transition(const State& z, State& next) const {
+    Vector<Scalar, 4> moved;
+    oscillator_.transition(oscillator_state(z, frequency(z)), moved);
+    next << moved[0], moved[1], z[2], z[3], z[4];
+  }
+
+  /// F(z) and J = dF/dz (5 x 5).
+  void linearised_transition(const State& z, State& next, Matrix<Scalar, 5>& jacobian) const {
+    const Scalar w = frequency(z), w2 = w * w, xi_w = z[3] * w;
+    Vector<Scalar, 4> moved;
+    Matrix<Scalar, 4> slopes;
+    oscillator_.linearised_transition(oscillator_state(z, w), moved, slopes);
+    next << moved[0], moved[1], z[2], z[3], z[4];
+    jacobian.setIdentity();
+    for (int i = 0; i < 2; ++i) {
+      jacobian(i, 0) = slopes(i, 0), jacobian(i, 1) = slopes(i, 1);
+      jacobian(i, 2) = w2 * slopes(i, 2) + xi_w * slopes(i, 3);
+      jacobian(i, 3) = 2.0 * w * slopes(i, 3);
+    }
+  }
+
+  void output(const State& z, Vector<Scalar, 1>& y) const { y[0] = z[0] + z[4]; }
+  void output_jacobian(const State&, Matrix<Scalar, 1, 5>& h) const { h << 1.0, 0.0, 0.0, 0.0, 1.0; }
+
+  const Matrix<Scalar, 5>& process_noise() const { return process_noise_; }
+  const Matrix<Scalar, 1>& output_noise() const { return output_noise_; }
+
+ private:
+  Scalar frequency(const State& z) const { return w0_ * exponential<Scalar>(0.5 * z[2]); }
+  static Vector<Scalar, 4> oscillator_state(const State& z, const Scalar& w) {
+    return {z[0], z[1], w * w, 2.0 * z[3] * w};
+  }
+
+  double w0_;
+  Matrix<Scalar, 5> process_noise_;
+  Matrix<Scalar, 1> output_noise_;
+  Oscillator<Scalar, 1> oscillator_;
 };
 
 // A model of which each lane sees some outputs only.

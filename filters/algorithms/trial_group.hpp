@@ -11,16 +11,20 @@ namespace beamid::filters::algorithms {
 /// code.
 struct TrialGroup {
   static constexpr int most = 4;  ///< lanes
+  /// Models (oscillator.hpp): of 4 states, moved exactly or by Euler's step, and of 5.
+  enum class Motion { exact, forward_euler, ringing };
 
-  double mass, interval;
-  int outputs;  ///< p
-  Quantity observed[3];
-  const double *output_noise, *process_noise;  ///< R (p x p), Q (4 x 4)
+  Motion motion;
+  double mass;       ///< M [kg]; nothing to a ringing mode
+  double frequency;  ///< w_0 [rad/s] of a ringing mode; nothing to the others
+  double interval;
+  int outputs;           ///< p; 1 of a ringing mode
+  Quantity observed[3];  ///< nothing to a ringing mode
   std::int64_t samples;
   bool predict_first;
-  bool forward_euler;  ///< how the oscillator moves; else exactly
   struct Lane {
-    const double *record, *mean, *covariance;  ///< y (p x samples), m (4), P (4 x 4)
+    const double *record, *mean, *covariance;    ///< y (p x samples), m (n), P (n x n)
+    const double *process_noise, *output_noise;  ///< Q (n x n), R (p x p)
     double *last_mean, *last_covariance;
     double sum_of_squares;  ///< of whitened innovations
     double mantissa;        ///< of the product of the diagonals of the roots of S
@@ -31,21 +35,17 @@ struct TrialGroup {
 };
 
 /// The extended Kalman filter on a group of W trials with P outputs.
-/// @tparam Motion Oscillator or EulerOscillator
-template <int W, class Instructions, int P, template <class, int> class Motion>
+/// @tparam Model Oscillator, EulerOscillator or RingingOscillator of these lanes
+template <int W, class Instructions, int P, class Model>
 class TrialGroupRun {
  public:
   using Scalar = Lanes<W, Instructions>;
-  using Model = Motion<Scalar, P>;
   using Mask = typename Scalar::Mask;
+  static constexpr int N = Model::states;
 
-  explicit TrialGroupRun(TrialGroup& group)
-      : group_(group),
-        model_(group.mass, group.interval, observed(group),
-               gather<4, 4>([&](int) { return group.process_noise; }),
-               gather<P, P>([&](int) { return group.output_noise; })) {
-    filter_.mean = gather<4, 1>([&](int lane) { return group.lanes[lane].mean; });
-    filter_.covariance = gather<4, 4>([&](int lane) { return group.lanes[lane].covariance; });
+  explicit TrialGroupRun(TrialGroup& group) : group_(group), model_(model_of(group)) {
+    filter_.mean = gather<N, 1>([&](int lane) { return group.lanes[lane].mean; });
+    filter_.covariance = gather<N, N>([&](int lane) { return group.lanes[lane].covariance; });
     for (auto& lane : group.lanes) lane.failed = -1;
   }
 
@@ -69,7 +69,7 @@ class TrialGroupRun {
         correct(model_, y);
         measured_ += select(alive_, Scalar(P), Scalar(0.0));
       } else {
-        SomeOutputs<Model, Scalar, 4, P> some(model_, y);
+        SomeOutputs<Model, Scalar, N, P> some(model_, y);
         correct(some, y);
         measured_ += select(alive_, some.measured().sum(), Scalar(0.0));
       }
@@ -80,10 +80,16 @@ class TrialGroupRun {
   }
 
  private:
-  static std::array<Quantity, P> observed(const TrialGroup& group) {
-    std::array<Quantity, P> result;
-    for (int i = 0; i < P; ++i) result[i] = group.observed[i];
-    return result;
+  static Model model_of(const TrialGroup& group) {
+    const auto q = gather<N, N>([&](int lane) { return group.lanes[lane].process_noise; });
+    const auto r = gather<P, P>([&](int lane) { return group.lanes[lane].output_noise; });
+    if constexpr (std::is_same_v<Model, RingingOscillator<Scalar>>) {
+      return {group.frequency, group.interval, q, r};
+    } else {
+      std::array<Quantity, P> observed;
+      for (int i = 0; i < P; ++i) observed[i] = group.observed[i];
+      return {group.mass, group.interval, observed, q, r};
+    }
   }
 
   template <int Rows, int Columns, class PlaceOfLane>
@@ -103,7 +109,7 @@ class TrialGroupRun {
     filter_.update(model);
     const auto& seen = filter_.seen;
     alive_ = alive_ & (seen.smallest_pivot > Scalar(0.0));
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < N; ++i) {
       const Scalar variance = filter_.covariance(i, i), zero = 0.0 * (filter_.mean[i] + variance);
       alive_ = alive_ & (zero == Scalar(0.0)) & (variance >= Scalar(0.0));
     }
@@ -113,9 +119,9 @@ class TrialGroupRun {
 
   // A lane that failed stays at its last good estimate, and marks when.
   void keep_dead(std::int64_t k) {
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < N; ++i) {
       filter_.mean[i] = select(alive_, filter_.mean[i], mean_[i]);
-      for (int j = 0; j < 4; ++j)
+      for (int j = 0; j < N; ++j)
         filter_.covariance(i, j) = select(alive_, filter_.covariance(i, j), covariance_(i, j));
     }
     for (int lane = 0; lane < W; ++lane)
@@ -124,9 +130,9 @@ class TrialGroupRun {
 
   void write(int lane) const {
     auto& out = group_.lanes[lane];
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < N; ++i) {
       out.last_mean[i] = filter_.mean[i][lane];
-      for (int j = 0; j < 4; ++j) out.last_covariance[4 * j + i] = filter_.covariance(i, j)[lane];
+      for (int j = 0; j < N; ++j) out.last_covariance[N * j + i] = filter_.covariance(i, j)[lane];
     }
     out.sum_of_squares = sum_of_squares_[lane];
     out.mantissa = product_.mantissa(lane);
@@ -136,9 +142,9 @@ class TrialGroupRun {
 
   TrialGroup& group_;
   Model model_;
-  ExtendedKalman<Scalar, 4, P> filter_;
-  Vector<Scalar, 4> mean_;  // before the step
-  Matrix<Scalar, 4> covariance_;
+  ExtendedKalman<Scalar, N, P> filter_;
+  Vector<Scalar, N> mean_;  // before the step
+  Matrix<Scalar, N> covariance_;
   Mask alive_ = Scalar(0.0) == Scalar(0.0);
   Scalar sum_of_squares_ = 0.0, measured_ = 0.0;
   LogProduct<Scalar> product_;
@@ -146,14 +152,18 @@ class TrialGroupRun {
 
 template <int W, class Instructions, template <class, int> class Motion>
 void run_group_moving(TrialGroup& group) {
-  if (group.outputs == 1) TrialGroupRun<W, Instructions, 1, Motion>(group).run();
-  if (group.outputs == 2) TrialGroupRun<W, Instructions, 2, Motion>(group).run();
-  if (group.outputs == 3) TrialGroupRun<W, Instructions, 3, Motion>(group).run();
+  using Scalar = Lanes<W, Instructions>;
+  if (group.outputs == 1) TrialGroupRun<W, Instructions, 1, Motion<Scalar, 1>>(group).run();
+  if (group.outputs == 2) TrialGroupRun<W, Instructions, 2, Motion<Scalar, 2>>(group).run();
+  if (group.outputs == 3) TrialGroupRun<W, Instructions, 3, Motion<Scalar, 3>>(group).run();
 }
 
 template <int W, class Instructions>
 void run_group(TrialGroup& group) {
-  if (group.forward_euler) return run_group_moving<W, Instructions, EulerOscillator>(group);
+  using Motion = TrialGroup::Motion;
+  using Ringing = RingingOscillator<Lanes<W, Instructions>>;
+  if (group.motion == Motion::ringing) return TrialGroupRun<W, Instructions, 1, Ringing>(group).run();
+  if (group.motion == Motion::forward_euler) return run_group_moving<W, Instructions, EulerOscillator>(group);
   run_group_moving<W, Instructions, Oscillator>(group);
 }
 

@@ -8,6 +8,7 @@
 #include "filters/algorithms/oscillator.hpp"
 #include "filters/central_differences.hpp"
 #include "filters/scheme.hpp"
+#include "filters/schemes/matrix_exponential.hpp"
 
 namespace beamid::oscillator_motion_test {
 namespace {
@@ -172,6 +173,35 @@ TEST(OscillatorMotion, HasTheJacobianOfItsOutputs) {
   };
   filters::central_differences(h, z, 3, difference);
   EXPECT_LT((jacobian - difference).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(OscillatorMotion, OfAMeasuredSignalIsThatOfItsMode) {
+  // Oracle: e^(A dt) of y'' + 2 xi w y' + w^2 y = 0 by Exponential2x2, central differences; small and large
+  // steps, stiffness near to what is expected and far from it.
+  using Ringing = filters::algorithms::RingingOscillator<double>;
+  const double w0 = 46.0;
+  for (const double dt : {1e-3, 0.02})
+    for (const double k : {0.0, 0.3, -1.2}) {
+      const Ringing model(w0, dt, Ringing::State::Zero().asDiagonal().toDenseMatrix(),
+                          Eigen::Matrix<double, 1, 1>::Ones());
+      Ringing::State z(0.012, -0.3, k, 0.02, 0.005), next;
+      Eigen::Matrix<double, 5, 5> jacobian;
+      model.linearised_transition(z, next, jacobian);
+      const double w = w0 * std::exp(0.5 * k);
+      Eigen::Matrix2d motion;
+      motion << 0.0, 1.0, -w * w, -2.0 * z[3] * w;
+      const Eigen::Vector2d moved = filters::Exponential2x2(motion * dt).value() * z.head<2>();
+      EXPECT_LT((next.head<2>() - moved).norm(), 1e-13 * moved.norm()) << dt << " " << k;
+      EXPECT_EQ(next.tail<3>(), z.tail<3>());
+      Eigen::MatrixXd difference;
+      const auto f = [&](const VectorXd& at, VectorXd& value) {
+        Ringing::State result;
+        model.transition(at, result);
+        value = result;
+      };
+      filters::central_differences(f, z, 5, difference);
+      EXPECT_LT((jacobian - difference).cwiseAbs().maxCoeff(), 1e-8 * difference.cwiseAbs().maxCoeff());
+    }
 }
 
 TEST(OscillatorMotion, GivesEveryLaneWhatAScalarGets) {

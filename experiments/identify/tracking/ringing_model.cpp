@@ -1,14 +1,15 @@
 #include "experiments/identify/tracking/ringing_model.hpp"
 
-#include <cmath>
+#include <array>
 #include <numbers>
 #include <stdexcept>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "experiments/identify/tracking/tracking.hpp"
+#include "filters/algorithms/oscillator.hpp"
+#include "filters/batch.hpp"
 #include "filters/filter.hpp"
-#include "filters/schemes/matrix_exponential.hpp"
 
 namespace beamid::experiments {
 
@@ -16,12 +17,18 @@ using namespace ringing;
 
 namespace {
 
-using Eigen::Matrix2d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
+using Eigen::MatrixXd, Eigen::VectorXd;
+using Motion = filters::algorithms::RingingOscillator<double>;
+
+// The entries that move without the two integrals, in the order of Motion.
+constexpr std::array<Eigen::Index, Motion::states> own{signal, slope, stiffness, damping, offset};
 
 class RingingModel final : public filters::DiscreteModel {
  public:
   RingingModel(double w0, double interval, filters::Noise noise)
-      : w0_(w0), interval_(interval), noise_(std::move(noise)) {}
+      : interval_(interval),
+        noise_(std::move(noise)),
+        motion_(w0, interval, noise_.process(own, own), noise_.output) {}
 
   std::vector<filters::Label> state_labels() const override {
     return {{"signal", "unit"},
@@ -53,27 +60,26 @@ class RingingModel final : public filters::DiscreteModel {
   }
 
  private:
-  double w0_, interval_;
+  double interval_;
   filters::Noise noise_;
+  Motion motion_;
 
   void move_exactly(const VectorXd& z, VectorXd& next, MatrixXd* jacobian) const {
-    const double w = w0_ * std::exp(0.5 * z[stiffness]), dt = interval_;
-    Matrix2d motion, by_stiffness, by_damping;
-    motion << 0.0, 1.0, -w * w, -2.0 * z[damping] * w;
-    const filters::Exponential2x2 exponential(motion * dt);
-    const Vector2d now = z.head<2>();
+    const Motion::State now = z(own);
+    Motion::State moved;
+    filters::algorithms::Matrix<double, Motion::states> tangent;
+    if (jacobian) {
+      motion_.linearised_transition(now, moved, tangent);
+      jacobian->setIdentity(size, size);
+      (*jacobian)(own, own) = tangent;
+      (*jacobian)(stiffness_integral, stiffness) = (*jacobian)(damping_integral, damping) = interval_;
+    } else {
+      motion_.transition(now, moved);
+    }
     next = z;
-    next.head<2>() = exponential.value() * now;
-    next[stiffness_integral] += z[stiffness] * dt;
-    next[damping_integral] += z[damping] * dt;
-    if (!jacobian) return;
-    jacobian->setIdentity(size, size);
-    jacobian->topLeftCorner<2, 2>() = exponential.value();
-    by_stiffness << 0.0, 0.0, -w * w, -z[damping] * w;
-    by_damping << 0.0, 0.0, 0.0, -2.0 * w;
-    jacobian->block<2, 1>(0, stiffness) = exponential.derivative(by_stiffness * dt) * now;
-    jacobian->block<2, 1>(0, damping) = exponential.derivative(by_damping * dt) * now;
-    (*jacobian)(stiffness_integral, stiffness) = (*jacobian)(damping_integral, damping) = dt;
+    next(own) = moved;
+    next[stiffness_integral] += z[stiffness] * interval_;
+    next[damping_integral] += z[damping] * interval_;
   }
 };
 
@@ -90,6 +96,19 @@ std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const fi
                                                 const std::string& method) {
   return filters::filter_registry().make(method, {},
                                          ringing_model(ringing.centre_hz, ringing.interval, noise));
+}
+
+filters::NoisyLikelihoods ringing_likelihoods(const Ringing& ringing, const filters::Measurements& span,
+                                              const filters::Gaussian& initial) {
+  filters::RingingTrials trials{2.0 * std::numbers::pi * ringing.centre_hz,
+                                ringing.interval,
+                                span.outputs.row(0),
+                                {initial.mean(own), initial.covariance(own, own)}};
+  return [trials = std::move(trials)](const std::vector<filters::Noise>& noises) {
+    std::vector<filters::Noise> own_noises;
+    for (const filters::Noise& noise : noises) own_noises.push_back({noise.process(own, own), noise.output});
+    return filters::ringing_log_likelihoods(trials, own_noises);
+  };
 }
 
 filters::Noise ringing_noise(const Ringing& ringing, double noise, double force, double walk) {

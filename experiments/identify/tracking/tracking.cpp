@@ -167,6 +167,7 @@ Levels tuned(const Ringing& ringing, const filters::Measurements& span, const fi
   search.max_iterations = first_iterations;
   search.tolerance = 1e-3;
   const filters::Measurements beginning = beginning_of(span);
+  search.likelihoods = ringing_likelihoods(ringing, beginning, initial);
   std::vector<double> walks{first_walk, 0.01 * first_walk};
   if (settings.walk) walks = {*settings.walk};
   std::optional<filters::NoiseEstimate> best;
@@ -180,6 +181,7 @@ Levels tuned(const Ringing& ringing, const filters::Measurements& span, const fi
   if (!best) return {ringing_noise(ringing, ringing.noise, 0.1 * typical_force(ringing), walks.front())};
   search.guess = best->noise;
   search.max_iterations = iterations;
+  search.likelihoods = ringing_likelihoods(ringing, span, initial);
   const filters::NoiseEstimate found = filters::estimate_noise(make_filter, initial, span, search);
   if (found.status != filters::NoiseStatus::failed) best = found;
   return {best->noise, best->relative_deviations[0]};

@@ -35,6 +35,11 @@ struct Ringing {
 std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise,
                                                 const std::string& method = "ekf");
 
+/// What ringing_filter() by `ekf` finds of that span, without the two integrals, of which no reading tells:
+/// five states, and several noises side by side.
+filters::NoisyLikelihoods ringing_likelihoods(const Ringing& ringing, const filters::Measurements& span,
+                                              const filters::Gaussian& initial);
+
 /// @param force of unmeasured excitation [unit/s2 sqrt(s)] @param walk of ln K and of twice the damping ratio
 /// [1/sqrt(s)]: a relative pole that wanders as far in any direction
 filters::Noise ringing_noise(const Ringing& ringing, double noise, double force, double walk);

@@ -118,9 +118,9 @@ std::vector<RecordLine> record_lines(const Eigen::MatrixXd& samples, double inte
   constexpr LineSettings line{.above_noise = 6, .above_valley = 2, .least = 0.02};
   std::vector<RecordLine> found;
   for (Index count = samples.cols(); count >= std::min(fewest, samples.cols()); count /= 4) {
-    const double resolution = 2 / (interval * static_cast<double>(count));
-    const std::vector<SpectralLine> lines = spectral_lines(samples.leftCols(count), interval, line);
-    double strongest = 0;
+    double strongest = 0, resolution = 2 / (interval * static_cast<double>(count));
+    const auto lines = count == samples.cols() ? spectral_lines(samples, interval, line)
+                                               : spectral_lines(samples.leftCols(count), interval, line);
     for (const SpectralLine& one : lines) strongest = std::max(strongest, one.amplitude);
     for (const SpectralLine& one : lines) {
       const auto known = std::find_if(found.begin(), found.end(), [&](const RecordLine& other) {

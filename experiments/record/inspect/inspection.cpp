@@ -275,12 +275,15 @@ void inspect_channel(const Inspection& found, InspectedChannel& channel) {
   const bool force = channel.quantity ? *channel.quantity == Quantity::force : rests(channel);
   channel.defects = find_defects(channel.samples, force ? SignalKind::force : SignalKind::motion);
   if (channel.defects.dead || count < fewest) return;
-  VectorXd samples = Eigen::Map<const VectorXd>(channel.samples.data(), std::ssize(channel.samples));
-  for (const auto* runs : {&channel.defects.spikes, &channel.defects.dropped})
-    for (const Run& run : *runs)
-      samples.segment(static_cast<Index>(run.first), static_cast<Index>(run.length))
-          .setConstant(std::nan(""));
-  const auto [time, signal, interval] = even_signal(found.time, samples, found.resolution);
+  const auto without_defects = [&] {
+    VectorXd samples = Eigen::Map<const VectorXd>(channel.samples.data(), std::ssize(channel.samples));
+    for (const auto* runs : {&channel.defects.spikes, &channel.defects.dropped})
+      for (const Run& run : *runs)
+        samples.segment(static_cast<Index>(run.first), static_cast<Index>(run.length))
+            .setConstant(std::nan(""));
+    return samples;
+  };
+  const auto [time, signal, interval] = even_signal(found.time, without_defects(), found.resolution);
   if (signal.size() < fewest) return;
   const VectorXd place = VectorXd::LinSpaced(signal.size(), -0.5, 0.5);
   channel.drift = place.dot(signal) / place.squaredNorm();
@@ -396,6 +399,7 @@ Inspection inspect(const std::filesystem::path& file, const RecordFormat& format
   if (found.channels.empty())
     throw InputError({table.file}, "no column but time; expected a measured quantity");
   if (format.window) cut(found, format);
+  table.columns.clear(), table.cell = nullptr;  // of a long record, numbers and text take the most memory
   found.sampling = check_sampling(found.time, found.resolution);
   for (InspectedChannel& channel : found.channels) inspect_channel(found, channel);
   found.remarks = table.remarks;

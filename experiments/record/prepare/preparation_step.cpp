@@ -102,7 +102,7 @@ AnalysableRecord on_even_stamps(const Record& record) {
 Record made_analysable(const Record& record) {
   AnalysableRecord made = analysable(record);
   if (!made.remark.empty()) made.record.remarks.push_back(made.remark);
-  return made.record;
+  return std::move(made.record);
 }
 
 namespace {

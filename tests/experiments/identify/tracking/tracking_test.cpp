@@ -10,6 +10,7 @@
 
 #include "experiments/signal/toolbox.hpp"
 #include "experiments/studies/track/report.hpp"
+#include "filters/filter_run.hpp"
 
 namespace beamid::experiments::tracking_test {
 namespace {
@@ -58,6 +59,28 @@ TEST(Tracking, FindsAStepOfStiffnessInTimeAndSize) {
   EXPECT_TRUE(between[0].of_stiffness());
   EXPECT_NEAR(between[0].stiffness, 0.21, 4 * between[0].stiffness_deviation);
   EXPECT_EQ(found.beat, "");
+}
+
+TEST(Tracking, HasTheLikelihoodsOfItsFilterSideBySide) {
+  // Oracle: runs of the filter of seven states, one by one. Five noises: more than there are lanes.
+  const Index count = 600;
+  Ringing ringing_mode;
+  ringing_mode.time = VectorXd::LinSpaced(count, 0.0, interval * static_cast<double>(count - 1));
+  ringing_mode.signal = ringing({20}, count, 3);
+  ringing_mode.interval = interval, ringing_mode.band_hz = {10, 40}, ringing_mode.centre_hz = 20;
+  ringing_mode.noise = noise;
+  const filters::Measurements span = ringing_mode.span(0, count - 1);
+  const filters::Gaussian initial = fresh_estimate(ringing_mode, 0);
+  std::vector<filters::Noise> noises;
+  for (const double share : {0.5, 0.9, 1.0, 1.1, 2.0})
+    noises.push_back(ringing_noise(ringing_mode, share * noise, share * typical_force(ringing_mode), 0.02));
+  const std::vector<double> found = ringing_likelihoods(ringing_mode, span, initial)(noises);
+  ASSERT_EQ(found.size(), noises.size());
+  for (std::size_t i = 0; i < noises.size(); ++i) {
+    const auto filter = ringing_filter(ringing_mode, noises[i]);
+    const filters::FilterRun run = filters::run(*filter, initial, span);
+    EXPECT_NEAR(found[i], run.log_likelihood, 1e-8 * std::abs(run.log_likelihood)) << i;
+  }
 }
 
 TEST(Tracking, NamesTheBeatOfTwoConstantModes) {
