@@ -251,9 +251,12 @@ class Recognition {
       throw table.fault(row, *first_words_);
     }
     if (columns.channels.empty() && swinging_) {  // "Sample", of GeoCSV: the reading, not its number
-      columns.channels.push_back({*swinging_, 1.0, {Quantity::acceleration, table.names[*swinging_]}});
+      const auto [quantity, factor] =
+          table.stated_unit ? certain_unit(table) : std::pair{Quantity::acceleration, 1.0};
+      columns.channels.push_back({*swinging_, factor, {quantity, table.names[*swinging_]}});
       columns.recognised = true;
-      read_ = fmt::format("'{}' as acceleration, its unit taken for m/s2", table.names[*swinging_]);
+      read_ = fmt::format("'{}' as {}{}", table.names[*swinging_], to_string(quantity),
+                          table.stated_unit ? "" : ", its unit taken for m/s2");
     }
     if (unnamed_ && !columns.time && !table.time && !stamped_) take_stamps(table, *unnamed_, {}, columns);
     for (const auto& [index, found] : clocks_)

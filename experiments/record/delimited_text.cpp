@@ -137,6 +137,7 @@ void DelimitedText::choose_separator() {
   width_ = fields_.size();
   if (decimal_ != '\0') return;
   decimal_ = '.';
+  refuse_commas_between_commas();
   constexpr int looked_at = 50;
   bool comma = false, thousands = true, whole = false;  // "998;999;1,000;1,001"
   std::string_view rest = rest_, line = line_;
@@ -157,6 +158,35 @@ void DelimitedText::choose_separator() {
     line = take_line(rest);
   }
   if (comma && !(thousands && whole)) decimal_ = ',';
+}
+
+// "0,0025,4,0031": halves of decimals keep their digits, and some begin with 0, as no whole numbers do.
+void DelimitedText::refuse_commas_between_commas() const {
+  constexpr int looked_at = 50;
+  if (separator_ != ',' || width_ % 2 != 0) return;
+  std::vector<std::size_t> digits;
+  bool zero = false;
+  std::string_view rest = rest_, line = line_;
+  for (int row = 0; row < looked_at; ++row) {
+    std::vector<std::string_view> fields;
+    split_fields(line, ',', fields);
+    if (fields.size() != width_) return;
+    for (std::size_t k = 0; k < width_; ++k) {
+      const std::string_view number = fields[k].substr(k % 2 == 0 && fields[k].starts_with('-') ? 1 : 0);
+      if (number.empty() || number.find_first_not_of("0123456789") != number.npos) return;
+      if (row == 0) digits.push_back(number.size());
+      if (k % 2 == 0) continue;
+      if (number.size() != digits[k] || number.size() < 2) return;
+      zero = zero || number.front() == '0';
+    }
+    if (rest.empty()) break;
+    line = take_line(rest);
+  }
+  if (zero)
+    throw InputError(
+        row_place(),
+        "decimal commas between commas that part columns; expected decimal points, or semicolons "
+        "or tabs between the columns");
 }
 
 void DelimitedText::split(std::string_view line) {
@@ -243,14 +273,46 @@ void DelimitedText::go_back_to(const EarlyLine& line, std::string_view text) {
   line_ = take_line(rest_), line_number_ = line.number;
 }
 
+namespace {
+
+/// A line between names and rows: "|------|-----:|", "-----+-----".
+bool is_rule(std::string_view content) {
+  return content.find_first_not_of("|-:+= \t") == content.npos && content.find("---") != content.npos;
+}
+
+/// "[4000 rows x 2 columns]" behind the rows.
+bool is_count_in_brackets(std::string_view line) {
+  const std::string_view content = trimmed(line);
+  return content.starts_with('[') && content.ends_with(']') && content.find("rows") != content.npos;
+}
+
+}  // namespace
+
 bool DelimitedText::next_row() {
   while (next_line()) {
     const std::string_view content = trimmed(line_);
-    if (content.empty()) continue;
+    if (content.empty() || is_rule(content)) continue;
     if (!is_comment(content)) return true;
     if (width_ == 0 && comments_.size() < most_early_lines) comments_.push_back({content, line_number_});
   }
   return false;
+}
+
+std::vector<std::string_view> DelimitedText::named_with_date(std::string_view line) const {
+  std::vector<std::string_view> names = named(line, width_);
+  static const std::set<std::string_view> clocks{"GPST", "UTC",       "JST",     "GPS",
+                                                 "Time", "Timestamp", "Datetime"};
+  if (names.size() + 1 != width_ || !clocks.contains(names[0])) return names;
+  std::vector<std::string_view> cells;
+  split_fields(line_, separator_, cells);
+  const auto date = parse_stamp(cells[0]), time = parse_stamp(cells[1]);
+  const bool dated =
+      date && time && date->kind == Stamp::Kind::date && time->kind == Stamp::Kind::time_of_day;
+  const bool in_weeks = !dated && cells[0].size() == 4 && is_reading(cells[0]) && is_reading(cells[1]);
+  if (!dated && !in_weeks) return names;
+  names[0] = dated ? "time" : "tow [s]";
+  names.insert(names.begin(), dated ? "date" : "week");
+  return names;
 }
 
 bool DelimitedText::is_comment(std::string_view content) const {
@@ -265,7 +327,8 @@ bool DelimitedText::only_words_follow() const {
   std::size_t lines = 0;
   do {
     split_fields(ahead.line_, separator_, ahead.fields_);
-    if (holds_reading(ahead.fields_) && !is_statement(ahead.line_) && !is_key_and_value(ahead.fields_))
+    if (holds_reading(ahead.fields_) && !is_statement(ahead.line_) && !is_key_and_value(ahead.fields_) &&
+        !is_count_in_brackets(ahead.line_))
       return false;
   } while (++lines < most_early_lines && ahead.next_row());
   return true;

@@ -140,10 +140,11 @@ class DelimitedText {
   void find_rows();                    ///< the same of a tolerant walk
   bool find_body();                    ///< the same by two rows in succession; false: there are none
   void choose_separator();             ///< and the decimal sign, by the first rows
-  void split(std::string_view line);   ///< while the separator is open
-  void split_row();                    ///< of this line, with cells at its end that hold nothing
-  void take_labels();                  ///< from the fields
-  void take_comment();                 ///< as names, where one names the columns
+  void refuse_commas_between_commas() const;
+  void split(std::string_view line);  ///< while the separator is open
+  void split_row();                   ///< of this line, with cells at its end that hold nothing
+  void take_labels();                 ///< from the fields
+  void take_comment();                ///< as names, where one names the columns
   void name_columns(std::string_view header, std::size_t line);
   std::vector<std::string_view> named(std::string_view line, std::size_t width) const;  ///< its fields
   /// With a date and a time below its first name, as receivers of GNSS write them.
@@ -167,9 +168,31 @@ class DelimitedText {
   std::vector<std::string> names_, units_;
 };
 
+/// A word in a row: no number, none with a unit behind it, and no time; but a number in hexadecimal digits.
+bool is_word(std::string_view field);
+
+/// A column of words that name the sensors of its rows, each in rows of its own, as numbers from 1.
+struct SensorRows {
+  std::size_t column;
+  std::vector<std::string> tags;  ///< their names
+};
+
 /// Stamps parted from their rows, labels joined with their numbers, words beside numbers blanked, one of
-/// several sensors kept (written_text.cpp). @throws InputError where none of these measures accelerations
-void bring_to_fields(const std::string& file, const RecordFormat& format, std::string& text);
+/// several sensors kept (written_text.cpp), or their names as numbers.
+/// @throws InputError where none of these measures accelerations
+std::optional<SensorRows> bring_to_fields(const std::string& file, const RecordFormat& format,
+                                          std::string& text);
+
+/// Words in a column that name a few sensors of as many rows each become numbers in place.
+std::optional<SensorRows> number_sensors(std::string& text);
+
+/// Rows of the same words and signs around their numbers become fields with labels; lines stay lines.
+void bring_pattern_to_fields(std::string& text);
+
+/// Rows of several sensors, of the same times, become channels side by side.
+/// @param tagged of number_sensors(); absent: a column named for sensors
+/// @throws InputError where each has times of its own
+void part_sensors(RecordTable& table, const std::optional<SensorRows>& tagged);
 
 /// A text in Windows-1251, by its words of Cyrillic letters, becomes UTF-8.
 void bring_to_utf8(std::string& text);
@@ -180,6 +203,14 @@ bool turn_lines_to_columns(std::string& text);
 /// Times from parts of a clock in columns of their own, blocks of rows side by side, names of solutions of
 /// GNSS that have none (record_table.cpp). @throws InputError where blocks have other times than the first
 void bring_in_order(RecordTable& table);
+
+/// A first row of one time of day for all columns, in seconds since 1970, and a second of one rate: the form
+/// of a wristband (plain_rows.cpp).
+void take_start_and_rate(RecordTable& table);
+
+/// Rows that go on from one to the next become one column (plain_rows.cpp).
+/// @param above lines above the rows; @param last numbers of a last row that is shorter
+void join_rows_that_go_on(RecordTable& table, std::string_view above, const std::vector<double>& last);
 
 /// The columns of a delimited text, dates and times of day as numbers of seconds.
 /// @param file for messages. @throws InputError at a row, or where there is none.

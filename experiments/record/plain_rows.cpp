@@ -1,15 +1,22 @@
-// Rows of plain numbers, many at a time: what a long file nearly always is, read on all cores.
+// Rows of plain numbers, many at a time: what a long file nearly always is, read on all cores; rows that are
+// one series, several numbers to a line; and rows below a time and a rate.
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <regex>
+#include <string>
 #include <system_error>
 #include <vector>
 
 #include "experiments/record/delimited_text.hpp"
 #include "experiments/record/record_table.hpp"
+#include "experiments/record/stamps.hpp"
 #include "experiments/text/fields.hpp"
 
 namespace beamid::experiments {
@@ -157,6 +164,87 @@ void DelimitedText::take_plain_rows(RecordTable& table, TextCells& cells) {
     length = std::min(most, growth * length);
   next_pause_ = all < few ? std::min(longest_pause, 2 * next_pause_ + 1) : 0;
   pause_ = next_pause_;
+}
+
+namespace {
+
+/// Rows of a table as columns (width x rows): its numbers in the order of the text.
+Eigen::MatrixXd series_of(const RecordTable& table) {
+  Eigen::MatrixXd series(static_cast<Eigen::Index>(table.width()), static_cast<Eigen::Index>(table.rows()));
+  for (std::size_t k = 0; k < table.width(); ++k)
+    series.row(static_cast<Eigen::Index>(k)) =
+        Eigen::Map<const Eigen::RowVectorXd>(table.columns[k].data(), series.cols());
+  return series;
+}
+
+/// Rows without names or times that go on from one to the next: one series, written several numbers to a
+/// line. The text above them states how many points there are, or the step from a row's last number to the
+/// next row's first is that within the rows, and smaller than that down a column. Columns of a series are of
+/// one mean and one size.
+bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
+  constexpr std::size_t fewest_columns = 3, fewest_rows = 20;
+  constexpr double alike = 0.25, less = 0.6, one_mean = 0.25, one_size = 0.2, smooth = 0.9;
+  if (!table.names.empty() || table.time || table.width() < fewest_columns || table.rows() < fewest_rows)
+    return false;
+  if (std::ranges::any_of(table.columns, rises)) return false;
+  const Eigen::MatrixXd series = series_of(table);
+  if (!series.allFinite()) return false;
+  static const std::regex of_all("channel|kan(a|\xc3\xa4)l|canal|total", std::regex::icase);
+  const std::string numbers = std::to_string(table.rows() * table.width() + last);
+  const std::regex count("(^|[^0-9.])" + numbers + "($|[^0-9.])"),
+      points("(points?|npts)[^0-9\n]{1,8}" + numbers + "($|[^0-9.])|(^|[^0-9.])" + numbers + " +points",
+             std::regex::icase);
+  const auto states = [&](const std::regex& one) {
+    return std::regex_search(above.begin(), above.end(), one) &&
+           !std::regex_search(above.begin(), above.end(), of_all);
+  };
+  if (states(points)) return true;
+  const Eigen::Index width = series.rows(), rows = series.cols();
+  const double mean = series.mean(), size = std::sqrt((series.array() - mean).square().mean());
+  const Eigen::VectorXd means = series.rowwise().mean(),
+                        sizes = (series.colwise() - means).cwiseAbs2().rowwise().mean().cwiseSqrt();
+  if (!((means.array() - mean).abs() <= one_mean * size).all() ||
+      !((sizes.array() - size).abs() <= one_size * size).all())
+    return false;
+  const double within = (series.bottomRows(width - 1) - series.topRows(width - 1)).cwiseAbs().mean(),
+               down = (series.rightCols(rows - 1) - series.leftCols(rows - 1)).cwiseAbs().mean(),
+               over = (series.row(0).tail(rows - 1) - series.row(width - 1).head(rows - 1)).cwiseAbs().mean();
+  if (!(within > 0.0) || std::abs(over / within - 1.0) > alike || within > smooth * size) return false;
+  return within < less * down || states(count);
+}
+
+void join_rows(RecordTable& table, const std::vector<double>& last) {
+  const Eigen::MatrixXd series = series_of(table);
+  std::vector<double> all(series.data(), series.data() + series.size());
+  all.insert(all.end(), last.begin(), last.end());
+  table.remarks.push_back(
+      fmt::format("Each row of {} numbers goes on from the row before: one series of {} numbers.",
+                  table.width(), all.size()));
+  table.columns.assign(1, std::move(all));
+  table.precision.resize(1);
+  table.lines.clear(), table.skipped_lines.clear();
+  table.cell = nullptr;
+}
+
+}  // namespace
+
+void join_rows_that_go_on(RecordTable& table, std::string_view above, const std::vector<double>& last) {
+  if (go_on(table, above, last.size())) join_rows(table, last);
+}
+
+void take_start_and_rate(RecordTable& table) {
+  constexpr double oldest = 1e9, newest = 4e9, fastest = 1e5;
+  constexpr std::size_t fewest = 16;
+  if (!table.names.empty() || table.time || table.rows() < fewest) return;
+  const double start = table.columns[0][0], rate = table.columns[0][1];
+  if (!(start > oldest && start < newest && rate > 0.0 && rate < fastest)) return;
+  for (const std::vector<double>& values : table.columns)
+    if (values[0] != start || values[1] != rate || std::abs(values[2]) > fastest) return;
+  std::vector<bool> kept(table.rows(), true);
+  kept[0] = kept[1] = false;
+  table.keep(kept);
+  table.stated_rate = rate;
+  table.remarks.emplace_back("The first row is the time of the first sample, the second the rate.");
 }
 
 }  // namespace beamid::experiments

@@ -17,13 +17,14 @@ using Kind = RecognisedColumn::Kind;
 
 std::string folded(std::string_view text) {
   static const std::vector<std::pair<std::string_view, std::string_view>> accents{
-      {"ä", "a"}, {"ö", "o"}, {"ü", "u"}, {"Ä", "a"}, {"Ö", "o"}, {"Ü", "u"}, {"ß", "ss"},
-      {"à", "a"}, {"á", "a"}, {"â", "a"}, {"ã", "a"}, {"ç", "c"}, {"é", "e"}, {"è", "e"},
-      {"ê", "e"}, {"í", "i"}, {"ì", "i"}, {"ó", "o"}, {"ò", "o"}, {"ô", "o"}, {"õ", "o"},
-      {"ú", "u"}, {"ù", "u"}, {"ñ", "n"}, {"É", "e"}, {"Á", "a"}, {"À", "a"}};
+      {"äàáâãåąÄÁÀ", "a"}, {"çćčČ", "c"},    {"éèêęěÉ", "e"},   {"ğ", "g"},   {"íìîıİ", "i"},
+      {"ł", "l"},          {"ñń", "n"},      {"öóòôõøőÖ", "o"}, {"řŘ", "r"},  {"śşšșŚŞ", "s"},
+      {"ț", "t"},          {"üúùûůűÜ", "u"}, {"ý", "y"},        {"żźž", "z"}, {"ß", "ss"}};
   std::string result(text);
-  for (const auto& [from, to] : accents)
-    for (std::size_t at; (at = result.find(from)) != std::string::npos;) result.replace(at, from.size(), to);
+  for (const auto& [letters, to] : accents)
+    for (std::size_t letter = 0; letter < letters.size(); letter += 2)  // of two bytes each
+      for (std::size_t at; (at = result.find(letters.substr(letter, 2))) != std::string::npos;)
+        result.replace(at, 2, to);
   for (char& letter : result) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   return result;
 }
@@ -64,13 +65,13 @@ bool any_word(const std::vector<std::string>& words, const std::set<std::string>
 }
 
 const std::set<std::string> times{
-    "t",         "time",     "stamp",   "times",   "timestamp", "zeit",    "zeitstempel",
-    "temps",     "tiempo",   "tempo",   "seconds", "secs",      "elapsed", "sekunden",
-    "secondes",  "segundos", "secondi", "date",    "datetime",  "datum",   "fecha",
-    "uhrzeit",   "epoch",    "unix",    "second",  "sec",       "sekunde", "seconde",
-    "segundo",   "secondo",  "hora",    "heure",   "ora",       "tijd",    "tid",
-    "aika",      "czas",     "时间",    "時間",    "時刻",      "время",   "Время",
-    "zeitpunkt", "uptime",   "ts",      "ticks",   "laufzeit",  "tow",     "timer"};
+    "t",       "time",  "stamp",     "times",   "timestamp", "zeit",     "zeitstempel", "temps",
+    "tiempo",  "tempo", "seconds",   "secs",    "elapsed",   "sekunden", "secondes",    "segundos",
+    "secondi", "date",  "datetime",  "datum",   "fecha",     "uhrzeit",  "epoch",       "unix",
+    "second",  "sec",   "sekunde",   "seconde", "segundo",   "secondo",  "hora",        "heure",
+    "ora",     "tijd",  "tid",       "aika",    "czas",      "时间",     "時間",        "時刻",
+    "время",   "Время", "zeitpunkt", "uptime",  "ts",        "ticks",    "laufzeit",    "tow",
+    "timer",   "zaman", "cas",       "ido",     "timp"};
 // Time, and its unit [s].
 const std::vector<std::pair<std::string_view, double>> clocks{
     {"millis", 1e-3},        {"milliseconds", 1e-3}, {"msec", 1e-3},          {"micros", 1e-6},
@@ -119,38 +120,41 @@ std::optional<Quantity> quantity_of(const std::vector<std::string>& words, std::
   for (const std::string& word : words) {
     static const std::set<std::string> axes{"a",   "ax",  "ay",   "az",   "gfx",
                                             "gfy", "gfz", "accx", "accy", "accz"};
-    if (axes.contains(word) ||
-        begins(word, {"acc", "beschl", "acel", "versnelling", "przysp", "ускор", "Ускор", "加速度"}))
+    if (axes.contains(word) || begins(word, {"acc", "beschl", "acel", "versnelling", "przysp", "ivme",
+                                             "zrychl", "ускор", "Ускор", "加速度"}))
       return base ? Quantity::base_acceleration : Quantity::acceleration;
-    if (begins(word, {"vel", "geschw", "vitesse", "veloc"}) || (word == "v" && name.find('V') == name.npos))
+    if (begins(word, {"vel", "geschw", "vitesse", "veloc", "snelheid", "predkosc", "hastighe", "rychlost",
+                      "скорост", "Скорост"}) ||
+        word == "hiz" || (word == "v" && name.find('V') == name.npos))
       return Quantity::velocity;
-    if (begins(word,
-               {"disp", "depla", "despl", "spost", "desloc", "ausl", "verschieb", "position", "defl"}) ||
+    if (begins(word, {"disp", "depla", "despl", "spost", "desloc", "ausl", "verschieb", "position", "defl",
+                      "verplaats", "przemieszcz", "degistirme", "forskju", "forsky", "перемещ", "Перемещ"}) ||
         word == "weg" || (word == "u" && !compass))
       return Quantity::displacement;
-    if (begins(word, {"force", "kraft", "fuerza", "forza", "forca", "load", "hammer"}) || word == "f")
+    if (begins(word, {"force", "kraft", "fuerza", "forza", "forca", "load", "hammer", "kracht", "kuvvet"}) ||
+        word == "f" || word == "sila")
       return Quantity::force;
-    if (begins(word, {"strain", "dehnung", "eps", "deform"})) return Quantity::strain;
+    if (begins(word, {"strain", "dehnung", "eps", "deform", "odksztalc", "gerinim", "tojning"}))
+      return Quantity::strain;
   }
   return {};
 }
 
 // mg and counts beside those of stated_unit().
 std::optional<StatedUnit> unit_of(const std::string& unit) {
-  static const std::set<std::string> milligravities{"mg", "mG", "milli-g", "milli g", "mgn"};
+  static const std::set<std::string> milligravities{"mg", "mG", "milli-g", "milli g", "mgn"},
+      gravities{"g0",  "gravity", "g pk", "g peak", "g rms",          "g's",           "gs",
+                "g_n", "G's",     "Gs",   "G",      "g\xe2\x80\x99s", "G\xe2\x80\x99s"};
   if (milligravities.contains(unit)) return StatedUnit{Quantity::acceleration, 1e-3 * standard_gravity};
   if (unit == "mGal" || unit == "mgal") return StatedUnit{Quantity::acceleration, 1e-5};
-  if (unit == "g's" || unit == "gs" || unit == "g_n" || unit == "G's" || unit == "Gs" ||
-      unit == "g\xe2\x80\x99s" || unit == "G\xe2\x80\x99s")
-    return StatedUnit{Quantity::acceleration, standard_gravity};
+  if (gravities.contains(unit)) return StatedUnit{Quantity::acceleration, standard_gravity};
   if (unit == "ips" || unit == "IPS") return StatedUnit{Quantity::velocity, 0.0254};
   if (unit == "mil" || unit == "mils") return StatedUnit{Quantity::displacement, 2.54e-5};
   if (unit == "ug" || unit == "µg") return StatedUnit{Quantity::acceleration, 1e-6 * standard_gravity};
   if (unit == "gal" || unit == "Gal") return StatedUnit{Quantity::acceleration, 1e-2};
   if (unit == "m·s⁻²" || unit == "m s⁻²" || unit == "m·s-2") return StatedUnit{Quantity::acceleration, 1.0};
-  if (unit == "G") return StatedUnit{Quantity::acceleration, standard_gravity};
-  if (unit == "microstrain" || unit == "µε" || unit == "με" || unit == "ue")
-    return StatedUnit{Quantity::strain, 1e-6};
+  static const std::set<std::string> microstrains{"microstrain", "µε", "με", "ue"};
+  if (microstrains.contains(unit)) return StatedUnit{Quantity::strain, 1e-6};
   return stated_unit(unit);
 }
 
@@ -200,7 +204,8 @@ std::string without_brackets(std::string text) {
   return text;
 }
 
-// The micro sign for a Greek mu, and units in Cyrillic letters, in brackets or behind a comma, in Latin ones.
+// The micro sign for a Greek mu, a point for a dot of mathematics, no signs of LaTeX, and units in Cyrillic
+// letters, in brackets or behind a comma, in Latin ones.
 std::string with_one_micro(std::string_view text) {
   static const std::vector<std::pair<std::string_view, std::string_view>> cyrillic{
       {"м/с2", "m/s2"},    {"м/с²", "m/s2"}, {"м/с^2", "m/s2"}, {"мм/с2", "mm/s2"}, {"мм/с²", "mm/s2"},
@@ -216,8 +221,10 @@ std::string with_one_micro(std::string_view text) {
   for (const auto& [written, latin] : cyrillic)
     if (unit == written)
       result.replace(from, end - from, (from > 0 && result[from - 1] == ',' ? " " : "") + std::string(latin));
-  for (std::size_t at; (at = result.find("\xce\xbc")) != std::string::npos;)
-    result.replace(at, 2, "\xc2\xb5");
+  for (std::size_t at; (at = result.find("μ")) != std::string::npos;) result.replace(at, 2, "µ");
+  for (std::size_t at; (at = result.find("⋅")) != std::string::npos;) result.replace(at, 3, "·");
+  if (result.find('^') != std::string::npos)  // "$m/s^{2}$"
+    std::erase_if(result, [](char c) { return c == '$' || c == '{' || c == '}'; });
   return result;
 }
 
@@ -308,8 +315,8 @@ std::optional<double> factor_elsewhere(std::string_view name, std::string_view u
 
 std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
                                                  std::string_view written_unit) {
-  const std::string name = with_one_micro(written_name),
-                    unit = without_brackets(with_one_micro(written_unit));
+  const std::string name = with_one_micro(written_name.substr(0, 400)),  // regexes go no deeper
+      unit = without_brackets(with_one_micro(written_unit));
   if (name.find("_per_") != std::string::npos &&  // of this project's own kind
       std::ranges::any_of(all_quantities, [&](Quantity one) { return name.starts_with(to_string(one)); }))
     return {};
@@ -366,9 +373,10 @@ std::optional<RecognisedColumn> recognise_column(std::string_view written_name,
   const bool volts = readings.contains(stated) || stated == "kV";
   const bool is_voltage = volts && by_name == Quantity::displacement && words.front() == "u",
              named = by_name.has_value() && !is_voltage && !direction;
-  static const std::set<std::string> frequencies{"freq",       "frequency", "frequenz",
-                                                 "frecuencia", "frequenza", "frequencia"};
-  if (!named && any_word(words, frequencies)) return RecognisedColumn{Kind::frequency};
+  if (!named && std::ranges::any_of(words, [](const auto& word) {
+        return begins(word, {"freq", "frecuen"});
+      }))
+    return RecognisedColumn{Kind::frequency};
   if (!named && (any_word(words, no_motion) || seconds_per_unit(stated)))
     return RecognisedColumn{Kind::other};
   if (!named && (stated.empty() || stated == "#" || stated == "-") && any_word(words, counts) &&

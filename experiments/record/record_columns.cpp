@@ -315,9 +315,12 @@ RecordColumns find_columns(RecordTable& table, const RecordFormat& format) {
   // Times that are stated elsewhere need no column.
   const bool stamped = format.time || format.sampling_rate;
   for (std::size_t index = 0; table.by_people && index < table.width(); ++index)
-    if (go_on_past_32_bits(table.columns[index]))
-      table.remarks.push_back(
-          fmt::format("Column {} starts again after 2^32 counts: it goes on from there.", index + 1));
+    if (const auto range = go_on_past_range(table.columns[index]))
+      table.remarks.push_back(fmt::format("Column {} starts again after {}: it goes on from there.",
+                                          index + 1,
+                                          *range > 65536.0 ? "2^32 counts"
+                                          : *range > 60.0  ? "2^16 counts"
+                                                           : "60"));
     else if (sum_intervals(table, index, table.columns[index]))
       table.remarks.push_back(fmt::format("Column {} holds intervals: times are their sum.", index + 1));
   if (format.channels.empty()) columns = columns_of_header(table, stamped);

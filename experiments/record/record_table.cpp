@@ -289,11 +289,13 @@ void join_parts_of_clock(RecordTable& table) {
 
 /// Hours, minutes and seconds in one number, 100055.250, as receivers of GNSS write them.
 void take_clock_digits(RecordTable& table) {
-  static const std::regex clock("(.*[^a-z])?(utc|gps|gnss|hhmmss|gpst)([^a-z].*)?");
+  static const std::regex clock("(.*[^a-z])?(utc|gps|gnss|hhmmss|gpst)([^a-z].*)?"), any("time|uhrzeit");
   if (table.time || table.names.size() != table.width()) return;
   for (std::size_t index = 0; index < table.width(); ++index) {
     const std::vector<double>& values = table.columns[index];
-    if (!std::regex_match(folded(table.names[index]), clock) || !rises(values)) continue;
+    const std::string name = folded(table.names[index]);
+    const bool jumps = std::regex_match(name, any) && !runs_evenly(values);  // from 100059.99 to 100100
+    if (!(jumps || std::regex_match(name, clock)) || !rises(values)) continue;
     std::vector<double> seconds;
     for (const double value : values) {
       const double hours = std::floor(value / 1e4), minutes = std::floor(std::fmod(value, 1e4) / 100.0),

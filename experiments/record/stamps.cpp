@@ -99,8 +99,8 @@ std::optional<double> take_date(StampText& text) {
   return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
 }
 
-/// Seconds since midnight. @param decimals of them, set
-std::optional<double> take_time_of_day(StampText& text, bool dated, int& decimals) {
+/// Seconds since midnight. @param decimals of them, set; @param parts of the second behind a colon, set
+std::optional<double> take_time_of_day(StampText& text, bool dated, int& decimals, int& parts) {
   StampText ahead = text;
   const auto fraction = [&] {
     double value = 0.0, place = 0.1;
@@ -119,8 +119,12 @@ std::optional<double> take_time_of_day(StampText& text, bool dated, int& decimal
     if (third < 0 || digits != 2 || first > 24 || second > 59 || third > 60) return {};
     seconds = an_hour * first + 60.0 * second + third;
     const char point = ahead.take_any(".,:");
-    if (point != '\0') seconds += fraction();
-    if (point == ':' && decimals == 2) return {};  // hundredths, or frames of a film
+    if (point == ':') {
+      if (ahead.at_digit()) parts = ahead.number(6, &digits), decimals = static_cast<int>(digits);
+      seconds += parts < 0 ? 0.0 : parts * std::pow(10.0, -decimals);
+    } else if (point != '\0') {
+      seconds += fraction();
+    }
   } else if (!dated && ahead.take_any(".,") != '\0' && second < 60) {
     seconds = 60.0 * first + second + fraction();
   } else {
@@ -197,7 +201,7 @@ std::optional<Stamp> parse_stamp(std::string_view field) {
     if (text.take_any("T ,_-") == '\0') return {};
     text.take(' ');
   }
-  const auto of_day = take_time_of_day(text, days.has_value(), stamp.decimals);
+  const auto of_day = take_time_of_day(text, days.has_value(), stamp.decimals, stamp.parts);
   if (!of_day) return {};
   stamp.kind = days ? Stamp::Kind::date_and_time : Stamp::Kind::time_of_day;
   stamp.seconds += *of_day;
@@ -206,6 +210,21 @@ std::optional<Stamp> parse_stamp(std::string_view field) {
                     std::ranges::all_of(text.rest.substr(1), [](char c) { return c >= 'A' && c <= 'Z'; });
   if (days && zone) text.rest = {};  // "UTC", "CET", "CEST": one offset throughout
   return text.rest.empty() ? std::optional(stamp) : std::nullopt;
+}
+
+std::optional<double> parts_of_second(const std::vector<double>& seconds, const std::vector<int>& parts,
+                                      bool padded) {
+  if (padded) return {};
+  const int most = *std::ranges::max_element(parts);
+  if (most >= 100) return 1000.0;  // ":5", ":50", ":500"
+  std::vector<double> steps, jumps;
+  for (std::size_t k = 1; k < parts.size(); ++k)
+    (seconds[k] == seconds[k - 1] ? steps : jumps).push_back(parts[k] - parts[k - 1]);
+  if (steps.empty() || jumps.empty()) return {};
+  const double step = median(std::move(steps)), last = step - median(std::move(jumps));
+  constexpr double hundredths = 100.0, off = 5.0;
+  if (std::abs(last - hundredths) <= off && most > 60) return hundredths;
+  return step >= 1.0 && last == most + step && last >= 10.0 ? std::optional(last) : std::nullopt;  // frames
 }
 
 std::string printed_like(const Stamp& stamp) {
@@ -253,33 +272,49 @@ double seconds_of_epoch(const std::vector<double>& stamps) {
   return 1.0;
 }
 
-bool go_on_past_32_bits(std::vector<double>& values) {
-  constexpr double range = 4294967296.0, like_others = 20.0;
-  constexpr std::size_t most_drops = 100;
-  if (values.size() < 3) return false;
-  std::vector<std::size_t> drops;
-  double rise = 0.0;
+namespace {
+
+/// Whether steps are positive, and but for a few times the usual one where it began again.
+bool begins_again(const std::vector<double>& values, double range) {
+  const bool of_counter = range > 60.0;
+  const std::size_t most_drops = range > 65536.0 ? 100 : values.size() / 4;
+  std::size_t drops = 0;
+  double rise = 0.0, longest = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!(values[k] >= 0.0 && values[k] < range) || values[k] != std::floor(values[k])) return false;
+    if (!(values[k] >= 0.0 && values[k] < range) || (of_counter && values[k] != std::floor(values[k])))
+      return false;
     if (k == 0) continue;
     if (const double step = values[k] - values[k - 1]; step > 0.0)
-      rise += step;
-    else
-      drops.push_back(k);
-    if (drops.size() > most_drops) return false;
-  }
-  if (drops.empty() || !(rise > 0.0)) return false;
-  const double usual = rise / static_cast<double>(values.size() - 1 - drops.size());
-  for (const std::size_t k : drops)
-    if (const double step = values[k] - values[k - 1] + range; !(step > 0.0 && step < like_others * usual))
+      rise += step, longest = std::max(longest, step);
+    else if (++drops > most_drops)
       return false;
-  double offset = 0.0;
-  std::size_t next = 0;
-  for (std::size_t k = drops[0]; k < values.size(); ++k) {
-    if (next < drops.size() && k == drops[next]) offset += range, ++next;
-    values[k] += offset;
   }
+  if (drops == 0 || !(rise > 0.0)) return false;
+  const double usual = rise / static_cast<double>(values.size() - 1 - drops),
+               like_others = range > 65536.0 ? 20.0 : 2.5;
+  if (range <= 65536.0 && longest > like_others * usual) return false;  // no motion rises so
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (const double step = values[k] - values[k - 1];
+        step <= 0.0 && !(step + range > 0.0 && step + range < like_others * usual))
+      return false;
   return true;
+}
+
+}  // namespace
+
+std::optional<double> go_on_past_range(std::vector<double>& values) {
+  if (values.size() < 3) return {};
+  for (const double range : {4294967296.0, 65536.0, 60.0}) {
+    if (!begins_again(values, range)) continue;
+    double offset = 0.0, before = values[0];
+    for (double& value : values) {
+      offset += value < before ? range : 0.0;
+      before = value;
+      value += offset;
+    }
+    return range;
+  }
+  return {};
 }
 
 double mean_step(const std::vector<double>& stamps) {

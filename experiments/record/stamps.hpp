@@ -16,6 +16,7 @@ struct Stamp {
   Kind kind = Kind::date;
   double seconds = 0.0;  ///< since 1970-01-01 without an offset or at UTC; of a time of day since midnight
   int decimals = 0;      ///< of the seconds, as printed
+  int parts = -1;        ///< of the second, behind a colon: in its seconds as if decimals
 };
 
 /// Dates: 2026-11-26, 2026/11/26, 26.11.2026, 11/26/2026, 26/11/2026 (where the first number is no month),
@@ -25,6 +26,13 @@ struct Stamp {
 /// intervals do not depend on it.
 /// @returns absent where the text is none
 std::optional<Stamp> parse_stamp(std::string_view text);
+
+/// How many parts behind the colon of "10:00:00:24" make a second: 1000 where they have up to three digits
+/// ("10:00:00:5"), 100, or the frames of a film, by where they begin again.
+/// @param seconds whole ones of each stamp; @param padded whether all have three digits or more
+/// @returns absent where they are decimals, or where nothing shows it
+std::optional<double> parts_of_second(const std::vector<double>& seconds, const std::vector<int>& parts,
+                                      bool padded);
 
 /// A number of as many decimals as the stamp was printed with, and of as many digits before them, for the
 /// precision of a column (sampling.hpp).
@@ -53,9 +61,11 @@ double usual_step(const std::vector<double>& stamps);
 /// Rises by equal steps, to 5 %.
 bool runs_evenly(const std::vector<double>& values);
 
-/// Goes on with a counter of 32 bits that started again: whole numbers below 2^32 that rise but for drops
-/// which 2^32 makes a step like the others. @returns whether it did
-bool go_on_past_32_bits(std::vector<double>& values);
+/// Goes on with a counter of 32 or 16 bits, or with the seconds of a minute, that started again: numbers
+/// below that range, whole ones of counters, that rise but for drops which the range makes a step like the
+/// others.
+/// @returns the range, where it did
+std::optional<double> go_on_past_range(std::vector<double>& values);
 
 /// 0 of fewer than two.
 double mean_step(const std::vector<double>& stamps);

@@ -70,11 +70,14 @@ std::vector<std::string_view> units_among(const std::vector<std::string_view>& c
   bool names_times = false;
   for (std::size_t k = 0; k < cells.size() && k < above.size(); ++k) {
     const bool is_unit = are_units({cells[k]}), repeats = cells[k] == above[k];
-    if (!is_unit && is_reading(cells[k])) return {};
+    const bool of_sampling = sampling_name(above[k]) != SamplingName::none || folded(above[k]) == "start";
+    if (!is_unit && is_reading(cells[k]) && !of_sampling) return {};
     if (is_unit && are_units({above[k]}) && !repeats) return {};
     const auto named = recognise_column(unquoted(above[k]), "");
-    names_times = names_times || (named && (named->kind == RecognisedColumn::Kind::time ||
-                                            named->kind == RecognisedColumn::Kind::count));
+    const auto counted = recognise_column(unquoted(cells[k]), "");  // "X" above "Sequence"
+    names_times = names_times || (counted && counted->kind == RecognisedColumn::Kind::count) ||
+                  (named && (named->kind == RecognisedColumn::Kind::time ||
+                             named->kind == RecognisedColumn::Kind::count));
     count += is_unit ? 1 : 0;
     units.push_back(is_unit ? cells[k] : std::string_view());
   }
@@ -229,7 +232,9 @@ bool DelimitedText::Body::is_beside_first(std::size_t line) const {
 
 // The first rows may end in cells that hold nothing.
 void DelimitedText::Body::take_empty_cells() {
-  if (!is_word_line_above()) return;
+  if (!is_word_line_above() &&
+      (first_ == 0 || fields_[first_ - 1].empty() || is_reading(fields_[first_ - 1][0])))
+    return;
   const std::size_t count = cells_of(lines_[first_].text, separator_of(lines_[first_ - 1].text)).size();
   if (count > width_ && count == fields_[first_ - 1].size()) width_ = count;
 }
@@ -249,6 +254,7 @@ std::vector<std::string_view> DelimitedText::Body::units_in(std::size_t line) co
   if (cells.size() < width_) cells = cells_of(lines_[line].text, separator_of(lines_[line].text));
   while (cells.size() > width_ && trimmed(cells.back()).empty()) cells.pop_back();
   if (lines_[line].rows || cells.size() != width_) return {};
+  if (folded(unquoted(cells[0])) == "x unit") return {};  // a key
   if (are_units(cells)) return cells;
   return line > 0 ? units_among(cells, text_.named(lines_[line - 1].text, width_))
                   : std::vector<std::string_view>();
@@ -257,15 +263,19 @@ std::vector<std::string_view> DelimitedText::Body::units_in(std::size_t line) co
 bool DelimitedText::Body::has_rows_above() const {
   for (std::size_t k = 0; k < first_; ++k) {
     const bool below_title = k > 0 && is_title(trimmed(lines_[k - 1].text));
+    if (is_word_line_above() && (fields_[k].empty() || fields_[k][0].empty()))
+      continue;  // below names of bodies, above those of axes
     if (lines_[k].rows && !below_title && (lines_[k].width == width_ || k + 1 == first_)) return true;
   }
   return false;
 }
 
 bool DelimitedText::Body::has_odd_line_above() const {
-  if (first_ == 0 || is_word_line_above() || may_name(first_ - 1) || is_statement(lines_[first_ - 1].text))
+  if (first_ == 0 || is_word_line_above() || may_name(first_ - 1) || is_statement(lines_[first_ - 1].text) ||
+      !units_in(first_ - 1).empty())
     return false;
-  if (fields_[first_][0].empty() && !fields_[first_ - 1][0].empty()) return false;  // a key
+  if (fields_[first_][0].empty() && !fields_[first_ - 1].empty() && !fields_[first_ - 1][0].empty())
+    return false;  // a key
   const auto is_key = [](const auto& fields) { return fields.size() == 2 && !is_reading(fields[0]); };
   if (width_ == 2 &&
       std::all_of(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(first_), is_key) &&
@@ -383,23 +393,6 @@ std::vector<std::string_view> DelimitedText::named(std::string_view line, std::s
   if (auto apart = parted_by_blanks(line); apart.size() == width && (width > 1 || chosen == ' '))
     return apart;
   split_fields(line, chosen, names);
-  return names;
-}
-
-std::vector<std::string_view> DelimitedText::named_with_date(std::string_view line) const {
-  std::vector<std::string_view> names = named(line, width_);
-  static const std::set<std::string_view> clocks{"GPST", "UTC",       "JST",     "GPS",
-                                                 "Time", "Timestamp", "Datetime"};
-  if (names.size() + 1 != width_ || !clocks.contains(names[0])) return names;
-  std::vector<std::string_view> cells;
-  split_fields(line_, separator_, cells);
-  const auto date = parse_stamp(cells[0]), time = parse_stamp(cells[1]);
-  const bool dated =
-      date && time && date->kind == Stamp::Kind::date && time->kind == Stamp::Kind::time_of_day;
-  const bool in_weeks = !dated && cells[0].size() == 4 && is_reading(cells[0]) && is_reading(cells[1]);
-  if (!dated && !in_weeks) return names;
-  names[0] = dated ? "time" : "tow [s]";
-  names.insert(names.begin(), dated ? "date" : "week");
   return names;
 }
 

@@ -21,6 +21,19 @@ bool holds_across(std::string_view text, const std::function<bool(std::string_vi
   });
 }
 
+bool is_word(std::string_view field) {
+  if (field.empty() || says_missing(field) || parse_stamp(field)) return false;
+  if (field.starts_with("0x") || field.starts_with("0X")) return true;
+  field.remove_prefix(std::min(field.find_first_not_of("([{"), field.size() - 1));  // "(0" is a number, cut
+  constexpr std::string_view digits = "0123456789", signs = "+-.,";
+  const bool of_number = digits.find(field.front()) != digits.npos || signs.find(field.front()) != signs.npos;
+  const std::size_t colon = field.find(':');
+  const bool of_time = colon != field.npos && colon > 0 && colon + 1 < field.size() &&
+                       digits.find(field[colon - 1]) != digits.npos &&
+                       digits.find(field[colon + 1]) != digits.npos;
+  return !of_number && !of_time && label_length(field) == 0;
+}
+
 namespace {
 
 using Fields = std::vector<std::string_view>;
@@ -157,19 +170,6 @@ void part_log_prefixes(std::string& text) {
   });
 }
 
-/// A word in a row: no number, none with a unit behind it, and no time; but a number in hexadecimal digits.
-bool is_word(std::string_view field) {
-  if (field.empty() || says_missing(field) || parse_stamp(field)) return false;
-  if (field.starts_with("0x") || field.starts_with("0X")) return true;
-  constexpr std::string_view digits = "0123456789", signs = "+-.,";
-  const bool of_number = digits.find(field.front()) != digits.npos || signs.find(field.front()) != signs.npos;
-  const std::size_t colon = field.find(':');
-  const bool of_time = colon != field.npos && colon > 0 && colon + 1 < field.size() &&
-                       digits.find(field[colon - 1]) != digits.npos &&
-                       digits.find(field[colon + 1]) != digits.npos;
-  return !of_number && !of_time && label_length(field) == 0;
-}
-
 /// "X: 0.25  Y: 1.5": a label takes the number behind it, "X:0.25".
 void join_labels(std::string& text) {
   const auto labelled = [](std::string_view line) {
@@ -233,7 +233,7 @@ void keep_one_sensor(const std::string& file, std::string& text) {
   for (std::size_t k = 0; k < first_cells; ++k) {
     const auto tag_of = [&](std::string_view line, Fields& fields) {
       split_fields(line, separator, fields);
-      return k < fields.size() && fields.size() > k + 1 ? unquoted(fields[k]) : std::string();
+      return k < fields.size() && fields.size() > k + 1 ? unquoted(fields[k].substr(0, 100)) : std::string();
     };
     if (!holds_across(text, [&](std::string_view line) {
           Fields fields;
@@ -251,7 +251,9 @@ void keep_one_sensor(const std::string& file, std::string& text) {
       else
         others = others || row;
     });
-    if (others || rows.size() < 2) continue;
+    const auto many =
+        std::ranges::count_if(rows, [&](const auto& one) { return std::regex_match(one.first, wanted); });
+    if (others || rows.size() < 2 || many == static_cast<std::ptrdiff_t>(rows.size())) continue;
     std::string list;
     for (const auto& [tag, count] : rows) list += (list.empty() ? "'" : ", '") + tag + "'";
     const auto kept = std::ranges::find_if(
@@ -348,14 +350,19 @@ bool turn_lines_to_columns(std::string& text) {
   return true;
 }
 
-void bring_to_fields(const std::string& file, const RecordFormat& format, std::string& text) {
+std::optional<SensorRows> bring_to_fields(const std::string& file, const RecordFormat& format,
+                                          std::string& text) {
   write_minus(text);
   part_stamps(text);
   part_log_prefixes(text);
   join_labels(text);
-  if (format.header_lines > 0) return;
+  if (format.header_lines > 0) return {};
   keep_one_sensor(file, text);
+  const std::optional<SensorRows> sensors =
+      format.separator == '\0' ? number_sensors(text) : std::optional<SensorRows>();
+  if (format.separator == '\0') bring_pattern_to_fields(text);
   blank_words(text, format.separator);
+  return sensors;
 }
 
 }  // namespace beamid::experiments

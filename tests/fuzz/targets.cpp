@@ -91,10 +91,12 @@ void read_as(const std::string& bytes, int way) {
     format.sampling_rate = 100.0;
     format.channels = {{Quantity::acceleration, "", 2}};
   }
-  // NaN in a file of numbers is a sample that was not read, as a gap of MiniSEED is.
+  // NaN in a file of numbers is a sample that was not read, as a gap of MiniSEED is, and as an empty cell or
+  // null of a text whose columns nobody described.
   const std::string_view name = reader;
   const bool gaps = format.malformed == MalformedRows::as_missing || name == "npy" || name == "sac" ||
-                    name == "tdms" || name == "miniseed";
+                    name == "tdms" || name == "miniseed" ||
+                    (name == "delimited_text" && format.channels.empty());
   refusable([&] {
     const Record record = read_record(file, format);
     promise(record.size() >= 2 && record.samples.rows() == static_cast<long>(record.channels.size()) &&
@@ -259,6 +261,7 @@ void read_page(const std::string& bytes, int way) {
 const std::vector<Target>& targets() {
   static const std::vector<Target> all{
       {"text", read_as<text>, record_ways},
+      {"json", read_as<text>, record_ways},
       {"lvm", read_as<lvm>, record_ways},
       {"nied", read_as<nied>, record_ways},
       {"strong_motion", read_as<strong_motion>, record_ways},

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -12,7 +11,6 @@
 #include <fstream>
 #include <memory>
 #include <optional>
-#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -133,9 +131,14 @@ std::string text_of_columns(const Json& object, int depth = 0) {
   std::string above;
   for (const auto& [name, value] : object.items())
     if (!value.is_structured()) above += name + ": " + cell_of(value) + "\n";
+  const Json* longest = nullptr;  // of arrays of rows
+  for (const auto& [name, value] : object.items())
+    if (value.is_array() && value.size() > 1 && value[0].is_structured() &&
+        (!longest || value.size() > longest->size()))
+      longest = &value;
+  if (longest)
+    if (const std::string inner = text_of_rows(*longest); !inner.empty()) return above + inner;
   for (const auto& [name, value] : object.items()) {
-    if (const std::string inner = text_of_rows(value); !inner.empty() && value[0].is_structured())
-      return above + inner;
     if (value.is_array() && value.size() > 1 && !value[0].is_structured())
       columns.emplace_back(name, &value);
     else if (value.is_object() && columns.empty() && depth < deepest)
@@ -172,18 +175,64 @@ std::string with_nulls(const std::string& content) {
   return text;
 }
 
-/// @throws InputError at the first letter that no document of JSON has there
-Json document_of(const std::string& file, const std::string& content) {
+/// Where a number beyond doubles stands, which the library names and does not place: "parsing '1e999'".
+std::size_t place_of_number(std::string_view content, std::string_view message) {
+  const std::size_t from = message.find('\'') + 1, to = message.rfind('\'');
+  if (from == 0 || to <= from) return 0;
+  const std::string_view number = message.substr(from, to - from);
+  bool quoted = false;
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    if (content[i] == '"' && (i == 0 || content[i - 1] != '\\')) quoted = !quoted;
+    if (!quoted && content.substr(i).starts_with(number)) return i;
+  }
+  return 0;
+}
+
+/// @param first line of the file. @throws InputError at the first letter that no document of JSON has there
+Json document_of(const std::string& file, const std::string& content, std::size_t first = 1) {
   try {
     return Json::parse(content);
   } catch (const Json::exception& error) {
     const auto* const parsing = dynamic_cast<const Json::parse_error*>(&error);
-    const std::string_view before =
-        std::string_view(content).substr(0, parsing && parsing->byte > 0 ? parsing->byte - 1 : 0);
-    const std::size_t line = static_cast<std::size_t>(std::ranges::count(before, '\n')) + 1,
+    const std::size_t at =
+        !parsing ? place_of_number(content, error.what()) : std::max<std::size_t>(parsing->byte, 1) - 1;
+    const std::string_view before = std::string_view(content).substr(0, at);
+    const std::size_t line = static_cast<std::size_t>(std::ranges::count(before, '\n')) + first,
                       column = before.size() - (before.rfind('\n') + 1) + 1;
-    throw InputError({file, line, column}, "JSON is broken here; expected an array of objects or of rows");
+    throw InputError({file, line, column},
+                     parsing ? "JSON is broken here; expected an array of objects or of rows"
+                             : "a number beyond double precision; expected one below 1.8e308");
   }
+}
+
+/// An object in each line; others are cut, or words of a console.
+/// @throws InputError where a number of one is beyond double precision, or where there are none
+Json objects_of_lines(const std::string& file, const std::string& content) {
+  Json rows = Json::array();
+  std::size_t number = 0;
+  for (const std::string_view line : lines_of(content)) {
+    ++number;
+    const std::string text = with_nulls(std::string(line));
+    try {
+      if (Json row = Json::parse(text); row.is_object()) rows.push_back(std::move(row));
+    } catch (const Json::parse_error&) {
+    } catch (const Json::out_of_range&) {
+      document_of(file, text, number);
+    }
+  }
+  return rows.empty() ? document_of(file, with_nulls(content)) : rows;
+}
+
+/// Columns of pandas, objects with one number for each row ({"t": {"0": 0.01, "1": 0.02}}), as arrays.
+void turn_columns_to_arrays(Json& object) {
+  constexpr std::size_t fewest = 16;
+  for (auto& [name, value] : object.items())
+    if (value.is_object() && value.size() >= fewest && value.contains("0") && value.contains("1") &&
+        std::ranges::none_of(value, [](const Json& one) { return one.is_structured(); })) {
+      Json numbers = Json::array();
+      for (Json& one : value) numbers.push_back(std::move(one));
+      value = std::move(numbers);
+    }
 }
 
 /// Its rows or columns as a text with separators; a document, or a line for each row.
@@ -199,13 +248,8 @@ std::string text_of_json(const std::string& file, const std::string& content) {
       json = is_document ? document_of(file, text) : Json::parse(text, nullptr, false);
     }
   }
-  if (json.is_discarded()) {
-    json = Json::array();
-    for (const std::string_view line : lines_of(content)) {
-      Json row = Json::parse(with_nulls(std::string(line)), nullptr, false);
-      if (row.is_object()) json.push_back(std::move(row));  // others are cut, or words of a console
-    }
-  }
+  if (json.is_discarded()) json = objects_of_lines(file, content);
+  if (json.is_object()) turn_columns_to_arrays(json);
   const std::string text = json.is_object() ? text_of_columns(json) : text_of_rows(json);
   if (text.empty())
     throw InputError(
@@ -237,81 +281,6 @@ const bool delimited_text_registered = record_reader_registry().add(
      {},
      {},
      [](const filters::Options&) { return std::make_unique<DelimitedTextReader>(); }});
-
-/// Rows of a table as columns (width x rows): its numbers in the order of the text.
-Eigen::MatrixXd series_of(const RecordTable& table) {
-  Eigen::MatrixXd series(static_cast<Eigen::Index>(table.width()), static_cast<Eigen::Index>(table.rows()));
-  for (std::size_t k = 0; k < table.width(); ++k)
-    series.row(static_cast<Eigen::Index>(k)) =
-        Eigen::Map<const Eigen::RowVectorXd>(table.columns[k].data(), series.cols());
-  return series;
-}
-
-/// Rows without names or times that go on from one to the next: one series, written several numbers to a
-/// line. The text above them states how many points there are, or the step from a row's last number to the
-/// next row's first is that within the rows, and smaller than that down a column. Columns of a series are of
-/// one mean and one size.
-bool go_on(const RecordTable& table, std::string_view above, std::size_t last) {
-  constexpr std::size_t fewest_columns = 3, fewest_rows = 20;
-  constexpr double alike = 0.25, less = 0.6, one_mean = 0.25, one_size = 0.2, smooth = 0.9;
-  if (!table.names.empty() || table.time || table.width() < fewest_columns || table.rows() < fewest_rows)
-    return false;
-  if (std::ranges::any_of(table.columns, rises)) return false;
-  const Eigen::MatrixXd series = series_of(table);
-  if (!series.allFinite()) return false;
-  static const std::regex of_all("channel|kan(a|\xc3\xa4)l|canal|total", std::regex::icase);
-  const std::string numbers = std::to_string(table.rows() * table.width() + last);
-  const std::regex count("(^|[^0-9.])" + numbers + "($|[^0-9.])"),
-      points("(points?|npts)[^0-9\n]{1,8}" + numbers + "($|[^0-9.])|(^|[^0-9.])" + numbers + " +points",
-             std::regex::icase);
-  const auto states = [&](const std::regex& one) {
-    return std::regex_search(above.begin(), above.end(), one) &&
-           !std::regex_search(above.begin(), above.end(), of_all);
-  };
-  if (states(points)) return true;
-  const Eigen::Index width = series.rows(), rows = series.cols();
-  const double mean = series.mean(), size = std::sqrt((series.array() - mean).square().mean());
-  const Eigen::VectorXd means = series.rowwise().mean(),
-                        sizes = (series.colwise() - means).cwiseAbs2().rowwise().mean().cwiseSqrt();
-  if (!((means.array() - mean).abs() <= one_mean * size).all() ||
-      !((sizes.array() - size).abs() <= one_size * size).all())
-    return false;
-  const double within = (series.bottomRows(width - 1) - series.topRows(width - 1)).cwiseAbs().mean(),
-               down = (series.rightCols(rows - 1) - series.leftCols(rows - 1)).cwiseAbs().mean(),
-               over = (series.row(0).tail(rows - 1) - series.row(width - 1).head(rows - 1)).cwiseAbs().mean();
-  if (!(within > 0.0) || std::abs(over / within - 1.0) > alike || within > smooth * size) return false;
-  return within < less * down || states(count);
-}
-
-void join_rows(RecordTable& table, const std::vector<double>& last) {
-  const Eigen::MatrixXd series = series_of(table);
-  std::vector<double> all(series.data(), series.data() + series.size());
-  all.insert(all.end(), last.begin(), last.end());
-  table.remarks.push_back(
-      fmt::format("Each row of {} numbers goes on from the row before: one series of {} numbers.",
-                  table.width(), all.size()));
-  table.columns.assign(1, std::move(all));
-  table.precision.resize(1);
-  table.lines.clear(), table.skipped_lines.clear();
-  table.cell = nullptr;
-}
-
-/// A first row of one time of day for all columns, in seconds since 1970, and a second of one rate: the form
-/// of a wristband.
-void take_start_and_rate(RecordTable& table) {
-  constexpr double oldest = 1e9, newest = 4e9, fastest = 1e5;
-  constexpr std::size_t fewest = 16;
-  if (!table.names.empty() || table.time || table.rows() < fewest) return;
-  const double start = table.columns[0][0], rate = table.columns[0][1];
-  if (!(start > oldest && start < newest && rate > 0.0 && rate < fastest)) return;
-  for (const std::vector<double>& values : table.columns)
-    if (values[0] != start || values[1] != rate || std::abs(values[2]) > fastest) return;
-  std::vector<bool> kept(table.rows(), true);
-  kept[0] = kept[1] = false;
-  table.keep(kept);
-  table.stated_rate = rate;
-  table.remarks.emplace_back("The first row is the time of the first sample, the second the rate.");
-}
 
 /// Whole seconds, and in the next column, named for a unit, the rest of them: 17:02:05, 001000 us.
 void add_rest_of_seconds(RecordTable& table) {
@@ -351,6 +320,11 @@ class StampColumn {
   /// finely then.
   double seconds_of(const Stamp& stamp, const std::vector<double>& before) {
     constexpr double half_a_day = 43200.0;
+    if (stamp.parts >= 0) {
+      parts_.resize(before.size(), 0);
+      parts_.push_back(stamp.parts);
+      padded_ = padded_ && stamp.decimals >= 3;
+    }
     if (stamp.kind == Stamp::Kind::date) {
       day_ = before.empty() || stamp.seconds > day_ ? stamp.seconds : std::nan("");
       return 0.0;
@@ -366,11 +340,26 @@ class StampColumn {
   }
 
   bool holds_dates() const { return std::isfinite(day_); }  ///< each later than the one before
+  bool holds_parts() const { return !parts_.empty() && !padded_; }
+
+  /// Parts of seconds behind a colon that are no decimals. @returns false: nothing shows how many make a
+  /// second
+  bool bring_parts_to(std::vector<double>& column) const {
+    if (parts_.size() != column.size()) return false;
+    std::vector<double> whole(column.size());
+    for (std::size_t row = 0; row < whole.size(); ++row) whole[row] = std::floor(column[row] + 1e-6);
+    const auto count = parts_of_second(whole, parts_, padded_);
+    for (std::size_t row = 0; count && row < whole.size(); ++row)
+      column[row] = whole[row] + parts_[row] / *count;
+    return count.has_value();
+  }
 
  private:
   std::optional<double> first_;  ///< [s]
   double days_ = 0.0;            ///< that have passed [s]
   double day_ = std::nan("");    ///< the last date [s]
+  std::vector<int> parts_;       ///< of seconds, behind a colon
+  bool padded_ = true;           ///< to three digits at least
 };
 
 }  // namespace
@@ -382,12 +371,14 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
   const std::string beginning = as_read.substr(0, looked_at_for_a_unit),
                     end = as_read.substr(as_read.size() - std::min(as_read.size(), looked_at_behind));
   const auto content = std::make_shared<std::string>(std::move(as_read));
-  bring_to_fields(file, format, *content);
+  const std::optional<SensorRows> sensors = bring_to_fields(file, format, *content);
   DelimitedText text(file, *content, format.separator, format.header_lines, format.decimal,
                      format.malformed == MalformedRows::skip);
   RecordTable table;
   table.file = file;
   table.names = text.names();
+  constexpr std::size_t longest_name = 400;
+  for (std::string& name : table.names) name.resize(std::min(name.size(), longest_name));
   table.by_people = true;
   table.units = text.units();
   table.header_line = text.header_line();
@@ -425,6 +416,15 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
                        fmt::format("column {} holds dates without times of day; expected times, or the "
                                    "sampling rate: --rate HZ",
                                    column + 1));
+  for (std::size_t column = 0; column < text.width(); ++column)
+    if (stamps[column].holds_parts() && !stamps[column].bring_parts_to(table.columns[column])) {
+      if (!format.sampling_rate)
+        throw InputError(table.place(0, column),
+                         "parts of seconds behind a colon, hundredths or frames; expected a point before "
+                         "decimals, or the sampling rate: --rate HZ");
+      std::ranges::fill(table.columns[column], std::nan(""));
+      table.time.reset();
+    }
   table.cell = cells.cells(text.separator());
   const std::string_view head = std::string_view(beginning).substr(0, above);
   const std::size_t cut = as_whole_lines(beginning, looked_at_for_a_rate);
@@ -436,9 +436,9 @@ RecordTable table_of_text(const std::string& file, std::string as_read, const Re
   take_start_and_rate(table);
   add_rest_of_seconds(table);
   bring_in_order(table);
+  part_sensors(table, sensors);
   if (turned) table.remarks.emplace_back("Each line of the file is a channel.");
-  if (format.channels.empty() && go_on(table, head, text.short_end().size()))
-    join_rows(table, text.short_end());
+  if (format.channels.empty()) join_rows_that_go_on(table, head, text.short_end());
   if (text.decimal() == ',') table.remarks.emplace_back("Its numbers have a decimal comma.");
   return table;
 }

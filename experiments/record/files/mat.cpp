@@ -1,5 +1,6 @@
 // MATLAB files of level 4, 5 and 7.3, through matio.
 #include <fmt/format.h>
+#include <matio.h>
 
 #include <algorithm>
 #include <cctype>
@@ -7,14 +8,36 @@
 #include <filesystem>
 #include <memory>
 
+#include <needed_library.hpp>
+
 #include "experiments/record/files/hdf5/handle.hpp"
-#include "experiments/record/files/matio.hpp"
 #include "experiments/record/read_apart.hpp"
 #include "experiments/record/record_table.hpp"
 #include "experiments/text/input_error.hpp"
 #include "experiments/text/toml_table.hpp"
 
 namespace beamid::experiments {
+// The functions of matio, loaded when a MATLAB file is read.
+
+constexpr NeededLibrary matio{BEAMID_MATIO};
+BEAMID_NEEDED(matio, Mat_Open);
+BEAMID_NEEDED(matio, Mat_Close);
+BEAMID_NEEDED(matio, Mat_GetVersion);
+BEAMID_NEEDED(matio, Mat_LogInitFunc);
+BEAMID_NEEDED(matio, Mat_VarFree);
+BEAMID_NEEDED(matio, Mat_VarReadNextInfo);
+BEAMID_NEEDED(matio, Mat_VarReadDataAll);
+BEAMID_NEEDED(matio, Mat_VarGetCell);
+BEAMID_NEEDED(matio, Mat_VarGetNumberOfFields);
+BEAMID_NEEDED(matio, Mat_VarGetStructFieldnames);
+BEAMID_NEEDED(matio, Mat_VarGetStructFieldByIndex);
+
+/// Closes a file and frees a variable of matio, for std::unique_ptr.
+struct MatioDeleter {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+
 namespace {
 
 std::unique_ptr<mat_t, MatioDeleter> opened(const std::string& name) {

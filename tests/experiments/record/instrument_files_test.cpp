@@ -374,6 +374,28 @@ TEST(Json, HoldsNotANumberAndItsErrorsHaveAPlace) {
   ASSERT_EQ(record.size(), rows);
   EXPECT_TRUE(std::isnan(record.samples(0, 7)));
   EXPECT_THAT(question_of(document + "{\"t\": }]"), HasSubstr(fmt::format("txt:{}:7: JSON", rows + 2)));
+  for (const char* const beyond : {"[{\"t\": 0},\n{\"t\": 1e999}]", "{\"t\": [0],\n\"a\": 1e999}",
+                                   "{\"t\": 0}\n{\"t\": 1e999}\n{\"t\": 2}"})
+    EXPECT_THAT(question_of(beyond), HasSubstr("txt:2:")) << beyond;
+}
+
+// Columns of pandas, and a unit and a rate beside the samples. Oracle: the decay.
+TEST(Json, HoldsColumnsOfPandasAndTheUnitBesideSamples) {
+  std::string times, values, samples;
+  for (int k = 0; k < rows; ++k) {
+    times += fmt::format("{}\"{}\": {:.4f}", k > 0 ? "," : "", k, 0.0025 * k);
+    values += fmt::format("{}\"{}\": {:.5f}", k > 0 ? "," : "", k, std::cos(0.08 * k));
+    samples += fmt::format("{}{:.5f}", k > 0 ? "," : "", std::cos(0.08 * k));
+  }
+  for (const auto& [text, factor] :
+       {std::pair{"{\"t\": {" + times + "}, \"acc\": {" + values + "}}", 1.0},
+        std::pair{"{\"sampling_rate_hz\": 400, \"unit\": \"g\", \"samples\": [" + samples + "]}",
+                  standard_gravity}}) {
+    const Record record = recognised(text);
+    ASSERT_EQ(record.size(), rows);
+    EXPECT_NEAR(record.interval(), 0.0025, 1e-9);
+    EXPECT_NEAR(record.samples(0, 9), factor * std::cos(0.72), 1e-4 * factor);
+  }
 }
 
 TEST(Inspection, TakesTheUnitThatStandsAboveTheColumns) {
