@@ -214,7 +214,8 @@ class Recognition {
         if (const auto& unit = table.stated_unit;
             unit && !found->states_unit && (!found->states_quantity || found->quantity == unit->first))
           std::tie(found->quantity, found->factor) = certain_unit(table), found->states_unit = true;
-        columns.channels.push_back({index, found->factor, {found->quantity, name}});
+        columns.channels.push_back(
+            {index, found->factor, {found->quantity, name}, !found->states_quantity && !found->states_unit});
         columns.recognised = true;
         const std::string unit = std::string(si_unit(found->quantity));
         std::string as_it_is;
@@ -359,7 +360,8 @@ RecordColumns columns_without_header(RecordTable& table, bool stamped) {
       rising += fmt::format("{}{}", rising.empty() ? "" : ", ", index + 1);
     else if (table.time != index && !never_moves(table.columns[index]) && !holds_words(table, index) &&
              !(table.width() > first + 1 && counts_rows(table.columns[index])))
-      columns.channels.push_back({index, factor, {quantity, fmt::format("column_{}", index + 1)}});
+      columns.channels.push_back(
+          {index, factor, {quantity, fmt::format("column_{}", index + 1)}, !table.stated_unit});
   if (columns.channels.empty())
     throw InputError({table.file, 0, 0},
                      "no column of numbers moves beside time; expected a measured motion");

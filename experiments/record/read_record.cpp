@@ -405,7 +405,7 @@ Record read_record(const std::filesystem::path& file, const RecordFormat& format
     throw InputError(
         table.rows() ? table.row_place(table.rows() - 1) : Place{table.file},
         fmt::format("{} of numbers; expected at least two", table.rows() ? "one row" : "no row"));
-  if (columns.recognised) leave_out_dead(table, columns);
+  if (columns.recognised) leave_out_still(table, columns);
   if (columns.recognised) leave_out_repeated(table, columns);
   if (columns.recognised && !format.sampling_rate && !table.clock) keep_updates(table, columns);
 

@@ -11,6 +11,7 @@
 #include "experiments/record/recognised_column.hpp"
 #include "experiments/record/stamps.hpp"
 #include "experiments/record/units.hpp"
+#include "experiments/signal/onsets.hpp"
 #include "experiments/text/spelling.hpp"
 
 namespace beamid::experiments {
@@ -390,6 +391,11 @@ bool is_magnitude(const RecordTable& table, const std::vector<RecordColumn>& cha
   return false;
 }
 
+Eigen::VectorXd finite_of(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 }  // namespace
 
 void leave_out_magnitudes(RecordTable& table, RecordColumns& columns) {
@@ -404,19 +410,38 @@ void leave_out_magnitudes(RecordTable& table, RecordColumns& columns) {
         "The magnitude of other columns, which has no frequency of its own, omitted: " + magnitudes + ".");
 }
 
-void leave_out_dead(RecordTable& table, RecordColumns& columns) {
+void leave_out_still(RecordTable& table, RecordColumns& columns) {
+  constexpr double longest = 0.01, shorter = 0.1, other_side = 0.2;  // of rows, of another's, of the peak
+  constexpr double fewest = 3.0;                                     // rows: fewer may be a spike
+  const bool any_assumed = std::ranges::any_of(columns.channels, &RecordColumn::assumed);
   std::vector<RecordColumn> alive;
-  std::string dead;
+  std::vector<Excursions> excursions;
+  std::string dead, pulses;
+  double most = 0.0;
   for (const RecordColumn& column : columns.channels) {
     const std::vector<double>& values = table.columns[column.index];
-    if (!is_dead(values))
-      alive.push_back(column);
-    else
+    if (is_dead(values)) {
       dead += (dead.empty() ? "'" : ", '") + column.channel.name + "'";
+      continue;
+    }
+    alive.push_back(column);
+    excursions.push_back(any_assumed ? excursions_of(finite_of(values)) : Excursions{});
+    most = std::max(most, excursions.back().share);
   }
-  if (alive.empty() || dead.empty()) return;
-  columns.channels = std::move(alive);
-  table.remarks.push_back("Without any motion, omitted: " + dead + ".");
+  if (alive.empty()) return;
+  columns.channels.clear();
+  for (std::size_t k = 0; k < alive.size(); ++k) {
+    const auto& [share, opposite] = excursions[k];
+    if (alive[k].assumed && share * static_cast<double>(table.rows()) >= fewest && opposite < other_side &&
+        share < std::min(shorter * most, longest))
+      pulses += (pulses.empty() ? "'" : ", '") + alive[k].channel.name + "'";
+    else
+      columns.channels.push_back(std::move(alive[k]));
+  }
+  if (!dead.empty()) table.remarks.push_back("Without any motion, omitted: " + dead + ".");
+  if (!pulses.empty())
+    table.remarks.push_back("Pulses to one side without a vibration, as of a hammer's force, omitted: " +
+                            pulses + ". As a force: --column N --quantity force --unit N.");
 }
 
 }  // namespace beamid::experiments

@@ -16,6 +16,7 @@ struct RecordColumn {
   std::size_t index = 0;  ///< from 0
   double factor = 1;      ///< to SI units
   Channel channel;        ///< of no meaning for time
+  bool assumed = false;   ///< no name or unit states its quantity
 };
 
 struct RecordColumns {
@@ -85,8 +86,10 @@ void keep_updates(RecordTable& table, const RecordColumns& columns);
 void leave_out_magnitudes(RecordTable& table, RecordColumns& columns);
 
 /// Of a file that nobody described: an axis that is not connected is no channel, unless no other moves
-/// either. Left out with a remark in `table`.
-void leave_out_dead(RecordTable& table, RecordColumns& columns);
+/// either. A column that no name or unit describes and that shows pulses to one side but no vibration, while
+/// another vibrates for ten times as long, is a hammer's force and no response. Each is left out with a
+/// remark in `table`.
+void leave_out_still(RecordTable& table, RecordColumns& columns);
 
 /// What is stated of a column holds, also where its header is wrong; but a column taken for its neighbour, or
 /// for another unit, makes every result wrong without a sign: a warning in `table`.

@@ -215,11 +215,10 @@ void RecordTable::keep(const std::vector<bool>& kept) {
 
 std::string skipped_text(const std::vector<std::size_t>& lines, const std::string& why) {
   if (lines.empty()) return "";
-  constexpr std::size_t most = 5;
-  std::string places;
-  for (std::size_t i = 0; i < std::min(lines.size(), most); ++i)
-    places += (i ? ", " : "") + std::to_string(lines[i]);
-  if (lines.size() > most) places += ", ...";
+  constexpr std::ptrdiff_t most = 5;
+  const auto end = lines.begin() + std::min(std::ssize(lines), most);
+  std::string places = fmt::format("{}", fmt::join(lines.begin(), end, ", "));
+  if (std::ssize(lines) > most) places += ", ...";
   return lines.size() == 1
              ? fmt::format("1 line is omitted, as it {}: line {}.", why, places)
              : fmt::format("{} lines are omitted, as each {}: lines {}.", lines.size(), why, places);
@@ -306,8 +305,7 @@ void take_clock_digits(RecordTable& table) {
     if (seconds.size() != values.size() || !runs_evenly(seconds) || values.front() < 1e4) continue;
     table.columns[index] = std::move(seconds);
     table.time = index;
-    table.remarks.push_back(
-        fmt::format("'{}' holds hours, minutes and seconds in one number.", table.names[index]));
+    table.remarks.push_back(fmt::format("'{}' is a clock in one number, hhmmss.", table.names[index]));
     return;
   }
 }

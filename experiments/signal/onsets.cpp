@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "experiments/signal/toolbox.hpp"
+
 namespace beamid::experiments {
 namespace {
 
@@ -53,6 +55,17 @@ Index SlidingMaximum::over(Index from, Index to) {
   }
   while (places_.front() < from) places_.pop_front();
   return places_.front();
+}
+
+Excursions excursions_of(const Eigen::VectorXd& signal) {
+  constexpr double quiet = 0.05;
+  if (signal.size() == 0) return {};
+  const Eigen::ArrayXd from_median = signal.array() - median(signal);
+  const double above = from_median.maxCoeff(), below = -from_median.minCoeff(), peak = std::max(above, below);
+  if (peak <= 0.0) return {};
+  return {
+      static_cast<double>((from_median.abs() > quiet * peak).count()) / static_cast<double>(signal.size()),
+      std::min(above, below) / peak};
 }
 
 Onsets find_onsets(const Eigen::VectorXd& signal, double interval, const OnsetSettings& settings) {

@@ -23,6 +23,15 @@ class SlidingMaximum {
   Eigen::Index next_ = 0;
 };
 
+/// How a signal departs from its median by more than a twentieth of its farthest sample, the peak.
+struct Excursions {
+  double share = 0;     ///< of its samples that do
+  double opposite = 0;  ///< the largest departure to the other side, of the peak
+};
+
+/// @param signal (N) finite; zero where it does not move
+Excursions excursions_of(const Eigen::VectorXd& signal);
+
 struct OnsetSettings {
   double threshold = 8;       ///< times the noise before the first event
   double smallest = 0.05;     ///< relative to the largest deviation: less is no event

@@ -24,14 +24,6 @@ VectorXd distance_from_median(const VectorXd& signal) {
   return (signal.array() - median(signal)).abs();
 }
 
-/// Share of a signal's samples that are farther from its median than a twentieth of the farthest.
-double active_share(const VectorXd& signal) {
-  constexpr double quiet = 0.05;
-  const VectorXd size = distance_from_median(signal);
-  return static_cast<double>((size.array() > quiet * size.maxCoeff()).count()) /
-         static_cast<double>(size.size());
-}
-
 /// Pulses or steps of a table, far above its noise.
 bool has_pulses(const VectorXd& signal) {
   constexpr double smallest = 0.05, noise = 10.0;  // of the largest; median deviations
@@ -54,7 +46,7 @@ bool is_struck(const Record& record) {
   }
   if (force < 0 || !record.samples.row(force).allFinite()) return false;
   const VectorXd signal = record.samples.row(force).transpose();
-  if (active_share(signal) > most_active) return false;
+  if (excursions_of(signal).share > most_active) return false;
   try {
     return find_hits(signal, record.interval()).size() >= fewest_hits;
   } catch (const std::invalid_argument&) {  // no hit
@@ -69,7 +61,7 @@ bool is_driven(const Record& record) {
     if (!is_input(quantity)) continue;
     const VectorXd signal = record.samples.row(i).transpose();
     if (!signal.allFinite()) continue;
-    if (active_share(signal) > least_active || (quantity != Quantity::force && has_pulses(signal)))
+    if (excursions_of(signal).share > least_active || (quantity != Quantity::force && has_pulses(signal)))
       return true;
   }
   return false;

@@ -69,7 +69,7 @@ std::string described_record(const std::filesystem::path& file, const RecordForm
   const Record record = read_record(file, format);
   RecordTable table = read_table(file, format);
   RecordColumns columns = find_columns(table, format);
-  if (columns.recognised) leave_out_dead(table, columns);
+  if (columns.recognised) leave_out_still(table, columns);
   const std::filesystem::path place = std::filesystem::absolute(file).lexically_relative(
       std::filesystem::absolute(folder).lexically_normal());
   std::string text = "[record]\nfile = " +
