@@ -118,8 +118,10 @@ std::vector<AmplitudePoint> amplitude_dependence(const VectorXd& signal, double 
     AmplitudePoint point{line.time,    2 * std::exp(line.log_amplitude),
                          w / (2 * pi), line.deviation / (2 * pi),
                          damping / w,  line.deviation / w};
-    if (!(point.damping_ratio_deviation <= settings.largest_deviation * std::abs(point.damping_ratio))) break;
-    points.push_back(point);
+    if (point.damping_ratio_deviation <= settings.largest_deviation * std::abs(point.damping_ratio))
+      points.push_back(point);
+    else if (!points.empty() || 2 * begin > count)  // else other motion is still dying out
+      break;
   }
   return points;
 }

@@ -68,7 +68,8 @@ Demodulated demodulate(const Eigen::VectorXd& signal, double interval, std::comp
 /// mean of time and of log amplitude, to which the slope belongs where it varies.
 ///
 /// Deviations are those of the slopes, s^2 correlation / integral of |z|^2 (t - mean)^2, with s^2 from the
-/// window's own residuals. The points end where the damping ratio's deviation exceeds `largest_deviation`.
+/// window's own residuals. The points end where the damping ratio's deviation exceeds `largest_deviation`;
+/// they begin, in the first half, where it does not: what else a hit moves dies out before.
 std::vector<AmplitudePoint> amplitude_dependence(const Eigen::VectorXd& signal, double interval,
                                                  std::complex<double> rate,
                                                  const std::vector<std::complex<double>>& others,

@@ -43,34 +43,61 @@ ModalEstimate strongest_of(const std::vector<ModeEstimate>& modes, const ModeEst
   return mode;
 }
 
-/// Absent where decaying modes explain the motion about it, or the record is no decay.
-std::optional<AmplitudeTrend> trend_of_strongest(const RecordModes& found, const VectorXd& signal) {
+/// The channel in which a mode is the largest part of the motion.
+Index channel_of(const ModeEstimate& mode, const Record& record) {
+  Index channel = 0;
+  (mode.pole.shape.cwiseAbs().array() / record.samples.rowwise().norm().array()).maxCoeff(&channel);
+  return channel;
+}
+
+/// Absent where decaying modes explain the motion about it.
+std::optional<AmplitudeTrend> trend_of(const ModeEstimate& mode, const RecordModes& found,
+                                       const VectorXd& signal) {
   constexpr double least_left = 0.05;
-  if (found.objection("no_decay") || !found.at_strongest.exceeds(least_left)) return {};
+  if (!residual_at(found, mode).exceeds(least_left)) return {};
   std::vector<std::complex<double>> others;
-  for (const ModeEstimate& mode : found.modes) others.push_back(mode.pole.rate);
+  for (const ModeEstimate& other : found.modes) others.push_back(other.pole.rate);
   try {
-    return amplitude_trend(
-        amplitude_dependence(signal, found.record.interval(), found.strongest().pole.rate, others));
+    return amplitude_trend(amplitude_dependence(signal, found.record.interval(), mode.pole.rate, others));
   } catch (const std::invalid_argument&) {  // too short
     return {};
   }
 }
 
+/// Sentences about modes of which frequency or damping follow the amplitude, where constant ones do not
+/// explain a twentieth of the motion; the deviations of the mode are widened to hold both ends of the decay.
+std::vector<Objection> amplitude_objections_to(RecordModes& found) {
+  std::vector<Objection> objections;
+  for (ModeEstimate& mode : found.modes) {
+    const Index channel = channel_of(mode, found.record);
+    const auto trend = trend_of(mode, found, found.record.samples.row(channel).transpose());
+    if (!trend) continue;
+    const double f = mode.pole.frequency_hz(), ratio = mode.pole.damping_ratio();
+    for (const AmplitudePoint& end : {trend->first, trend->last}) {
+      mode.frequency_spread_hz = std::max(mode.frequency_spread_hz, std::abs(end.frequency_hz - f));
+      mode.damping_ratio_spread = std::max(mode.damping_ratio_spread, std::abs(end.damping_ratio - ratio));
+    }
+    objections.emplace_back(
+        "amplitude_dependent",
+        fmt::format(
+            "The mode at {:.4g} Hz depends on its amplitude: {} as that falls from {:.3g} to {:.3g} {}. "
+            "One frequency and damping ratio do not describe it; intervals are widened to hold both "
+            "ends. --amplitude lists the values between; a later --window gives those of small motion.",
+            f, trend->changes(), trend->first.amplitude, trend->last.amplitude,
+            si_unit(found.record.channels[static_cast<std::size_t>(channel)].quantity)));
+  }
+  return objections;
+}
+
 /// Sentences about the strongest mode in the channel that shows it best: a jump of the motion on the way
 /// (decay_jump.hpp), and the overtone of a sensor that saturates softly (amplitude_dependence.hpp), where the
-/// damping ratio is wrong by more than two of its deviations through it.
-///
-/// And where frequency or damping follow the amplitude and constant ones do not explain a twentieth of the
-/// motion: then the deviations of the mode are widened to hold both ends of the decay.
+/// damping ratio is wrong by more than two of its deviations through it; then those about amplitudes.
 std::vector<Objection> decay_objections_to(RecordModes& found) {
   if (found.modes.empty()) return {};
-  const auto at = static_cast<std::size_t>(&found.strongest() - found.modes.data());
-  const ModeEstimate& strongest = found.modes[at];
+  const ModeEstimate& strongest = found.strongest();
   const Record& record = found.record;
-  Eigen::Index channel = 0;
-  (strongest.pole.shape.cwiseAbs().array() / record.samples.rowwise().norm().array()).maxCoeff(&channel);
-  const Eigen::VectorXd signal = record.samples.row(channel).transpose();
+  const Index channel = channel_of(strongest, record);
+  const VectorXd signal = record.samples.row(channel).transpose();
   const ModalEstimate mode = strongest_of(found.modes, strongest, channel);
   std::vector<Objection> objections;
   if (const auto jump = decay_jump(signal, record.interval(), mode))
@@ -89,22 +116,8 @@ std::vector<Objection> decay_objections_to(RecordModes& found) {
             "{} The damping ratio of the mode at {:.4g} Hz is wrong by about {:.2g} % through it, "
             "more than its standard deviation. Expected a later --window, or a sensor of larger range.",
             overtone->words(), mode.frequency_hz, 100 * std::abs(overtone->damping_error())));
-  if (const auto trend = trend_of_strongest(found, signal)) {
-    ModeEstimate& one = found.modes[at];
-    const double f = one.pole.frequency_hz(), ratio = one.pole.damping_ratio();
-    for (const AmplitudePoint& end : {trend->first, trend->last}) {
-      one.frequency_spread_hz = std::max(one.frequency_spread_hz, std::abs(end.frequency_hz - f));
-      one.damping_ratio_spread = std::max(one.damping_ratio_spread, std::abs(end.damping_ratio - ratio));
-    }
-    objections.emplace_back(
-        "amplitude_dependent",
-        fmt::format(
-            "The mode at {:.4g} Hz depends on its amplitude: {} as that falls from {:.3g} to {:.3g} {}. "
-            "One frequency and damping ratio do not describe it; intervals are widened to hold both "
-            "ends. --amplitude lists the values between; a later --window gives those of small motion.",
-            f, trend->changes(), trend->first.amplitude, trend->last.amplitude,
-            si_unit(record.channels[static_cast<std::size_t>(channel)].quantity)));
-  }
+  if (found.objection("no_decay")) return objections;
+  for (Objection& one : amplitude_objections_to(found)) objections.push_back(std::move(one));
   return objections;
 }
 

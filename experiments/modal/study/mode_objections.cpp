@@ -291,12 +291,10 @@ VectorXd line_powers(const MatrixXd& samples, double interval, double from_hz, d
   return lines_between(samples.transpose(), first, last - first + 1).cwiseAbs2().colwise().sum().transpose();
 }
 
-/// Over lines within 15 % of its frequency, three at least to either side, and its first three time
-/// constants, for what random forces or drafts move later is no part of the decay. The noise is the broadband
-/// noise of the channels (defects.hpp).
-ResidualAtMode residual_at_strongest(const RecordModes& found) {
+}  // namespace
+
+ResidualAtMode residual_at(const RecordModes& found, const ModeEstimate& mode) {
   constexpr double beside = 0.15, time_constants = 3.0;
-  const ModeEstimate& mode = found.strongest();
   const auto lasting = static_cast<Index>(time_constants / (-mode.pole.rate.real() * found.interval));
   const Index count =
       std::clamp<Index>(lasting, std::min<Index>(16, found.target.cols()), found.target.cols());
@@ -313,8 +311,6 @@ ResidualAtMode residual_at_strongest(const RecordModes& found) {
   return {std::sqrt(of_left.sum() / of_motion.sum()),
           of_left.sum() / std::max(white * static_cast<double>(of_left.size()), 1e-300)};
 }
-
-}  // namespace
 
 void object_to_decay(const Record& whole, RecordModes& found) {
   constexpr double least_loss = 0.05, most_left = 0.2;
@@ -356,7 +352,7 @@ void object_to_decay(const Record& whole, RecordModes& found) {
                     found.record.time[0], advice));
     return;
   }
-  found.at_strongest = residual_at_strongest(found);
+  found.at_strongest = residual_at(found, found.strongest());
   if (motion_goes_on(found))
     object(
         "no_decay",

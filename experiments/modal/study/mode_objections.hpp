@@ -34,6 +34,11 @@ int followed_multiple(const RecordModes& found, double frequency_hz);
 
 // What contradicts a free decay.
 
+/// Of the motion about a mode, what decaying modes do not explain: over lines within 15 % of its frequency,
+/// three at least to either side, and its first three time constants, for what random forces or drafts move
+/// later is no part of the decay. The noise is the broadband noise of the channels (defects.hpp).
+ResidualAtMode residual_at(const RecordModes& found, const ModeEstimate& mode);
+
 /// `no_decay` where the motion does not decay, goes on to the end, or was not released; else
 /// `unexplained_motion` where decaying modes do not explain a fifth of the motion about the strongest mode,
 /// which is nine times the power of the noise there: of noise and linear modes neither occurs. Then

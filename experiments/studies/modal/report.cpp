@@ -235,7 +235,8 @@ Dependence dependence_of(const RecordModes& found, std::size_t at) {
     one.points = amplitude_dependence(found.record.samples.row(one.channel).transpose(),
                                       found.record.interval(), pole.rate, others);
     for (AmplitudePoint& point : one.points) point.time += found.record.time[0];
-    if (one.points.empty()) one.reason = "damping ratio uncertain by more than 20 % from the first window on";
+    if (one.points.empty())
+      one.reason = "damping ratio uncertain by more than 20 % in the first half of the record";
   } catch (const std::invalid_argument& error) {
     one.reason = error.what();
   }

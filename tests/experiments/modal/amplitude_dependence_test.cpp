@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "experiments/modal/study/modal_study.hpp"
 #include "experiments/signal/toolbox.hpp"
+#include "tests/experiments/modal/nonlinear_decay.hpp"
 
 namespace beamid::experiments::amplitude_dependence_test {
 namespace {
@@ -93,6 +96,33 @@ TEST(AmplitudeDependence, KeepsModesApart) {
     EXPECT_NEAR(point.frequency_hz, 9.5 / std::sqrt(1 - 0.005 * 0.005), 2e-3);
     EXPECT_NEAR(point.amplitude, 0.1 * std::exp(-0.005 * w2 * point.time), 2e-3);
   }
+}
+
+// A mode whose frequency falls by 2.5 % with its amplitude, 1 + b A^2 with b A_0^2 = 0.025, beside a constant
+// one that is stronger at first, and a motion of a fifth of its damping time near its frequency. Oracle: what
+// was simulated.
+TEST(AmplitudeDependence, IsNamedOfTheWeakerModeBehindOtherMotion) {
+  constexpr double interval = 1e-3, f = 20;
+  const Eigen::Index count = 4000;
+  Record record;
+  record.time = Eigen::VectorXd::LinSpaced(count, 0, interval * static_cast<double>(count - 1));
+  record.samples = test::nonlinear_decay(f, 0.012, 1, 1e-3, interval, count).transpose();
+  record.channels = {{Quantity::acceleration, "tip"}};
+  const Eigen::VectorXd noise = standard_normal(count, 6, 1);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double t = interval * static_cast<double>(k);
+    record.samples(0, k) += 8 * std::exp(-10 * t) * std::cos(2 * pi * 187 * t) +
+                            4 * std::exp(-15 * t) * std::cos(2 * pi * 24.8 * t) + 2e-3 * noise[k];
+  }
+  const RecordModes found = find_modes("a", record, false, {});
+  const auto of_f = [&](const Objection& one) {
+    return one.name == "amplitude_dependent" && one.text.find("The mode at 20") != std::string::npos;
+  };
+  EXPECT_EQ(std::ranges::count_if(found.objections, of_f), 1);
+  const auto mode = std::ranges::min_element(
+      found.modes, {}, [&](const ModeEstimate& one) { return std::abs(one.pole.frequency_hz() - f); });
+  ASSERT_NE(mode, found.modes.end());
+  EXPECT_NEAR(mode->pole.frequency_hz(), f, 2 * mode->pole.frequency_deviation_hz);
 }
 
 // A motion whose frequency drifts by 5 %, and its cube: an overtone that follows. A mode near three times the
