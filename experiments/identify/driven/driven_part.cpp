@@ -78,7 +78,7 @@ PartAt::PartAt(const DrivenProblem& problem, const LinearResponse& response, con
   if (problem.input_noise.size() > 0)
     whiten(motions_by_inputs(problem, response, part, problem.input_noise), lines, read, added);
   const VectorXd all = line_rows(read);
-  MatrixXd columns = line_rows(added);
+  columns = line_rows(added);
   VectorXd scale = columns.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   // What dies out or turns within a sample is nothing that a record holds: its amplitudes would be rounding.
   for (Index j = 0; j < l; ++j)
@@ -102,9 +102,7 @@ RecordLines thinned(const RecordLines& part, Index stride) {
 }
 
 void PartAt::project(VectorXd& rows) const {
-  rows.applyOnTheLeft(ends.householderQ().transpose());
-  rows.head(ends.rank()).setZero();
-  rows.applyOnTheLeft(ends.householderQ());
+  rows -= columns * ends.solve(rows);
 }
 
 VectorXd PartAt::change_to(const DrivenProblem& problem, const LinearResponse& other,

@@ -31,7 +31,8 @@ struct PartAt {
   Eigen::MatrixXcd driven;                           ///< W G_k u_k (p x L)
   Eigen::MatrixXcd moved;                            ///< the same with what d adds (p x L)
   Eigen::VectorXd difference;                        ///< d, as the residual has it (l)
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> ends;  ///< of W Z, columns of one length
+  Eigen::MatrixXd columns;                           ///< W Z, of one length each
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> ends;  ///< of them
   Eigen::VectorXd left;                              ///< (2 p L)
 
   PartAt(const DrivenProblem& problem, const LinearResponse& response, const RecordLines& part);

@@ -65,7 +65,7 @@ class RecordFit {
         run_(comparison.runs.front()),
         setting_(model_setting(experiment, comparison.analysis.record, experiment.reduction, folder)),
         record_(measurements(comparison.analysis.record)) {
-    constexpr Index enough_lines = 4096;
+    constexpr Index enough_lines = 2048;
     const VectorXd here = run_.unknown_state.mean;
     lines_ = driven_problem(*run_.model, record_, {here, stated_deviations().cwiseAbs2().asDiagonal(), {}});
     if (!lines_) return;
@@ -98,13 +98,17 @@ class RecordFit {
   /// itself.
   /// @returns absent where they decide against it, or lead it to the estimate
   std::optional<VectorXd> led_by_lines(const VectorXd& unknowns) const {
-    constexpr double plain = 0.05, more = 1.1;  // of the lines, what the estimate leaves; times that
+    constexpr double plain = 0.05;                // of the lines, not explained by the estimate
+    constexpr double more = 1.1, hopeless = 2.0;  // times that, at the end and on the way there
+    constexpr int most_fits = 3;
     if (!lines_ || left_ < plain) return unknowns;
     try {
       DrivenProblem from_there = *lines_;
       from_there.prior.mean = unknowns;
-      const DrivenFit fit = fit_driven_from(from_there, unknowns);
-      if (fit.converged && (fit.left_share > more * left_ || is_here(fit.theta))) return {};
+      DrivenFit fit = fit_driven_from(from_there, unknowns);
+      for (int i = 1; i < most_fits && !fit.converged; ++i) fit = fit_driven_from(from_there, fit.theta);
+      if (fit.left_share > (fit.converged ? more : hopeless) * left_ || (fit.converged && is_here(fit.theta)))
+        return {};
       return fit.converged ? fit.theta : unknowns;
     } catch (const std::runtime_error&) {  // no motion there
       return unknowns;
