@@ -88,6 +88,68 @@ void HeldStep::step(const VectorXd& state, const MatrixXd& chain, VectorXd& next
   by_unknowns = sloped_.reshaped(moving_, by_unknowns.cols());
 }
 
+/// Linear in the states s (the unknowns apart) and in the inputs u at the instant:
+///
+///     y = G [s; u],   d y / d eta_j = G_j [s; u]
+///
+/// Made of one reading of each unit vector, as HeldStep is of steps.
+class HeldReading {
+ public:
+  /// Readings of unit vectors that G and G_j take (columns); those of unknowns are zero.
+  static Index columns(const SecondOrderMotion& motion) { return motion.layout().size + motion.input_size(); }
+
+  HeldReading(const SecondOrderMotion& motion, const VectorXd& unknowns, const SecondOrderForm& form,
+              const std::vector<SecondOrderForm>& slopes);
+
+  void read(const VectorXd& state, const VectorXd& input, VectorXd& output) {
+    join(state, input);
+    output.noalias() = value_ * joined_;
+  }
+  /// @param jacobian (p x n), its columns of unknowns from `unknowns_` on
+  void read_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) {
+    join(state, input);
+    sloped_.noalias() = slope_ * joined_;
+    jacobian = constant_;
+    jacobian.middleCols(unknowns_, count_) = sloped_.reshaped(constant_.rows(), count_);
+  }
+
+ private:
+  void join(const VectorXd& state, const VectorXd& input) {
+    joined_.head(state.size()) = state;
+    const Index inputs = joined_.size() - state.size();
+    if (input.size() > 0) joined_.tail(inputs) = input.head(inputs);
+  }
+
+  Index unknowns_, count_;
+  MatrixXd value_, slope_, constant_;  // G (p x columns), G_j one below the other, what no state changes
+  VectorXd joined_, sloped_;
+};
+
+HeldReading::HeldReading(const SecondOrderMotion& motion, const VectorXd& unknowns,
+                         const SecondOrderForm& form, const std::vector<SecondOrderForm>& slopes)
+    : unknowns_(motion.layout().unknowns), count_(static_cast<Index>(slopes.size())) {
+  const Index size = motion.layout().size, all = columns(motion);
+  joined_.setZero(all);
+  VectorXd output;
+  MatrixXd jacobian;
+  const auto read_at = [&](VectorXd one) {
+    one.segment(unknowns_, unknowns.size()) = unknowns;
+    const VectorXd state = one.head(size), input = one.tail(all - size);
+    motion.read(state, input, form, output);
+    motion.read_jacobian(state, input, form, slopes, jacobian);
+  };
+  read_at(joined_);
+  constant_ = jacobian;
+  value_.setZero(output.size(), all);
+  slope_.setZero(output.size() * count_, all);
+  for (Index k = 0; k < all; ++k) {
+    if (k >= unknowns_ && k < unknowns_ + count_) continue;
+    read_at(VectorXd::Unit(all, k));
+    value_.col(k) = output;
+    slope_.col(k) = jacobian.middleCols(unknowns_, count_).reshaped();
+  }
+}
+
 class SecondOrderStep final : public filters::TimedModel {
  public:
   SecondOrderStep(std::shared_ptr<const SecondOrderMotion> motion, double dt, const std::string& scheme,
@@ -121,11 +183,19 @@ class SecondOrderStep final : public filters::TimedModel {
   }
   void output(const VectorXd& state, const VectorXd& input, VectorXd& output) override {
     evaluate(state, false);
-    motion_->read(state, input, form_, output);
+    if (reading_)
+      reading_->read(state, input, output);
+    else
+      motion_->read(state, input, form_, output);
   }
   void output_jacobian(const VectorXd& state, const VectorXd& input, MatrixXd& jacobian) override {
     evaluate(state, true);
-    motion_->read_jacobian(state, input, form_, slopes_, jacobian);
+    if (!reading_ && is_worth_holding(++readings_, HeldReading::columns(*motion_), motion_->rows().rows()))
+      reading_.emplace(*motion_, unknowns_, form_, slopes_);
+    if (reading_)
+      reading_->read_jacobian(state, input, jacobian);
+    else
+      motion_->read_jacobian(state, input, form_, slopes_, jacobian);
   }
 
  private:
@@ -136,8 +206,9 @@ class SecondOrderStep final : public filters::TimedModel {
   // The equations at unknowns_, and what is known of them: a step and the outputs after it share them.
   VectorXd unknowns_, held_input_;
   bool has_form_ = false, has_slopes_ = false, is_set_ = false;
-  Index tangents_ = 0;            // asked for at these unknowns
-  std::optional<HeldStep> held_;  // once as many as it costs
+  Index tangents_ = 0, readings_ = 0;  // computed at these unknowns
+  std::optional<HeldStep> held_;       // once as many as it costs
+  std::optional<HeldReading> reading_;
   SecondOrderForm form_;
   std::vector<SecondOrderForm> slopes_;
   MatrixXd tangent_, moved_;
@@ -146,14 +217,15 @@ class SecondOrderStep final : public filters::TimedModel {
   void interval_changed() override { prepare(); }
   void prepare() {
     is_set_ = false;
-    forget_held_step();
+    forget_held();
     apart_ = scheme_ == RationalStep::Scheme::exponential && motion_->decoupled();
     if (!apart_ || motion_->input_size() > 0) rational_.emplace(scheme_, interval(), motion_->frequencies());
   }
 
-  void forget_held_step() {
-    tangents_ = 0;
+  void forget_held() {
+    tangents_ = readings_ = 0;
     held_.reset();
+    reading_.reset();
   }
 
   // dt A of oscillator i, or its change along an unknown
@@ -186,7 +258,7 @@ class SecondOrderStep final : public filters::TimedModel {
         state.segment(at.unknowns, static_cast<Index>(motion_->description().unknowns.size()));
     if (!has_form_ || unknowns != unknowns_) {
       has_form_ = has_slopes_ = is_set_ = false;
-      forget_held_step();
+      forget_held();
       unknowns_ = unknowns;
     }
     if (has_slopes_ || (has_form_ && !slopes)) return;
@@ -213,7 +285,9 @@ class SecondOrderStep final : public filters::TimedModel {
 
   void step_together(const VectorXd& state, const VectorXd& input, VectorXd& next, MatrixXd* tangent) {
     const MatrixXd chain = rational_->chain_of(input, form_.inputs.cols());
-    if (tangent && (held_ ? held_->takes(chain) : is_worth_holding(chain.cols()))) {
+    const Index columns = HeldStep::columns(form_, chain.cols());
+    if (tangent &&
+        (held_ ? held_->takes(chain) : is_worth_holding(tangents_, columns, 2 * form_.stiffness.rows()))) {
       if (!held_) held_.emplace(*rational_, form_, slopes_, chain.cols()), is_set_ = false;
       held_->step(state, chain, next, by_motion(*tangent), by_unknowns(*tangent));
       return;
@@ -231,10 +305,11 @@ class SecondOrderStep final : public filters::TimedModel {
   }
 
   // Where the record is walked at one set of unknowns; a filter moves them with every sample.
-  bool is_worth_holding(Index powers) const {
+  // @param times computed so far @param columns, rows of the matrix that is kept
+  bool is_worth_holding(Index times, Index columns, Index rows) const {
     constexpr Index most_entries = 2'000'000;
-    const Index columns = HeldStep::columns(form_, powers), q = static_cast<Index>(slopes_.size());
-    return q > 0 && tangents_ >= columns && form_.stiffness.rows() * 2 * q * columns <= most_entries;
+    const Index q = static_cast<Index>(slopes_.size());
+    return q > 0 && times >= columns && rows * q * columns <= most_entries;
   }
 
   Eigen::Block<MatrixXd> by_motion(MatrixXd& tangent) const {

@@ -126,6 +126,26 @@ TEST_P(OwnStep, IsTheSchemesUnderAForceThatIsAPolynomialOfTheStep) {
   }
 }
 
+// A record walked at one set of unknowns is read by matrices, made once as many readings were taken as they
+// have columns. Oracle: the readings of the motion itself, also where the unknowns move on.
+TEST_P(OwnStep, ReadsAsTheMotionDoesHoweverLongTheUnknownsStay) {
+  constexpr double digits = 1e-13;
+  VectorXd state = state_, input = input_, output, expected;
+  MatrixXd jacobian, expected_jacobian;
+  const auto enough = static_cast<int>(state.size() + input.size()) + 3;
+  for (int k = 0; k < 2 * enough; ++k) {
+    state = state_ + 1e-4 * VectorXd::LinSpaced(state.size(), -k, 0.5 * k).array().sin().matrix();
+    for (const Index place : model_->unknown_places) state[place] = state_[place] * (k < enough ? 1.0 : 1.05);
+    input = input_ * std::cos(0.3 * k);
+    step_->output_jacobian(state, input, jacobian);
+    step_->output(state, input, output);
+    model_->motion->output(state, input, expected);
+    model_->motion->output_jacobian(state, input, expected_jacobian);
+    expect_near(output, expected, digits);
+    expect_near(jacobian, expected_jacobian, digits);
+  }
+}
+
 TEST_P(OwnStep, IsTheExponentialToTwelveDigitsOrAllThatItsSizeLeaves) {
   // Oracle: the exponential of the motion augmented by input and derivative, in 64-bit significands.
   if (std::get<1>(GetParam()) != "exponential") GTEST_SKIP();
