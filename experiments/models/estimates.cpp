@@ -58,7 +58,7 @@ std::string failure_text(const filters::Failure& failure) {
   return fmt::format("sample {}, {:.4f} s: {}{}", failure.step, failure.time, failure.reason,
                      std::isnan(failure.smallest_eigenvalue)
                          ? ""
-                         : fmt::format(" (smallest eigenvalue {:.3g})", failure.smallest_eigenvalue));
+                         : fmt::format(" (smallest eigenvalue {:.1g})", failure.smallest_eigenvalue));
 }
 
 std::string step_too_long(const std::string& scheme, const FoundMode& mode, double interval) {

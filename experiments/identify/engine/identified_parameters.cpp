@@ -35,7 +35,7 @@ std::string failure_sentences(const std::vector<filters::Failure>& events) {
                         events[i].reason,
                         std::isnan(events[i].smallest_eigenvalue)
                             ? ""
-                            : fmt::format(" (smallest eigenvalue {:.3g})", events[i].smallest_eigenvalue));
+                            : fmt::format(" (smallest eigenvalue {:.1g})", events[i].smallest_eigenvalue));
   if (events.size() > listed) text += fmt::format(" And {} more events.", events.size() - listed);
   return text;
 }
