@@ -54,7 +54,8 @@ Index channel_of(const ModeEstimate& mode, const Record& record) {
 std::optional<AmplitudeTrend> trend_of(const ModeEstimate& mode, const RecordModes& found,
                                        const VectorXd& signal) {
   constexpr double least_left = 0.05;
-  if (!residual_at(found, mode).exceeds(least_left)) return {};
+  const ResidualAtMode left = &mode == &found.strongest() ? found.at_strongest : residual_at(found, mode);
+  if (!left.exceeds(least_left)) return {};
   std::vector<std::complex<double>> others;
   for (const ModeEstimate& other : found.modes) others.push_back(other.pole.rate);
   try {
