@@ -193,7 +193,7 @@ int run_modal(const Values& values) {
             "Channels with a clock of their own (own_clock) are taken as stamped: frequencies and damping do "
             "not depend on a lag, shapes do.");
       records.push_back(made_analysable(prepared.back().record));
-      if (request.format.preparation.empty())  // reports then ask for its sentences alone: samples once
+      if (request.format.preparation.empty())  // a report then takes its sentences alone: samples once
         for (Record* one : {&prepared.back().raw, &record})
           one->time.resize(0), one->samples.resize(one->samples.rows(), 0);
       names.push_back(request.file.filename().string());

@@ -160,7 +160,7 @@ std::vector<double> ringing_log_likelihoods(const RingingTrials& kind, const std
   }
   TrialGroup group{
       TrialGroup::Motion::ringing, 0.0, kind.frequency, kind.interval, 1, {}, kind.signal.size(), false, {}};
-  Eigen::VectorXd mean(5);  // where each ended, which nobody asks
+  Eigen::VectorXd mean(5);  // where each ended, unused
   MatrixXd covariance(5, 5);
   const auto lane_of = [&](std::size_t i) {
     return TrialGroup::Lane{kind.signal.data(),

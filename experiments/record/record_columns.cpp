@@ -413,7 +413,8 @@ void leave_out_magnitudes(RecordTable& table, RecordColumns& columns) {
 void leave_out_still(RecordTable& table, RecordColumns& columns) {
   constexpr double longest = 0.01, shorter = 0.1, other_side = 0.2;  // of rows, of another's, of the peak
   constexpr double fewest = 3.0;                                     // rows: fewer may be a spike
-  const bool any_assumed = std::ranges::any_of(columns.channels, &RecordColumn::assumed);
+  const bool any_assumed =
+      columns.channels.size() > 1 && std::ranges::any_of(columns.channels, &RecordColumn::assumed);
   std::vector<RecordColumn> alive;
   std::vector<Excursions> excursions;
   std::string dead, pulses;

@@ -159,19 +159,27 @@ TEST(OscillatorMotion, IsTheExponentialScheme) {
     }
 }
 
+/// Central differences at z of a function whose result is a Result of fixed size.
+template <class Result, class Function>
+Eigen::MatrixXd slopes_by_differences(const Function& function, const VectorXd& z) {
+  Eigen::MatrixXd slopes;
+  const auto f = [&](const VectorXd& at, VectorXd& value) {
+    Result result;
+    function(at, result);
+    value = result;
+  };
+  filters::central_differences(f, z, Result::RowsAtCompileTime, slopes);
+  return slopes;
+}
+
 TEST(OscillatorMotion, HasTheJacobianOfItsOutputs) {
   // Oracle: central differences.
   const Motion model = motion(3.0, 1e-3);
   const Vector4d z(0.012, -0.3, 515.8, 7.867);
   Eigen::Matrix<double, 3, 4> jacobian;
   model.output_jacobian(z, jacobian);
-  Eigen::MatrixXd difference;
-  const auto h = [&](const VectorXd& at, VectorXd& value) {
-    Eigen::Vector3d y;
-    model.output(at, y);
-    value = y;
-  };
-  filters::central_differences(h, z, 3, difference);
+  const Eigen::MatrixXd difference = slopes_by_differences<Eigen::Vector3d>(
+      [&](const VectorXd& at, Eigen::Vector3d& y) { model.output(at, y); }, z);
   EXPECT_LT((jacobian - difference).cwiseAbs().maxCoeff(), 1e-8);
 }
 
@@ -193,13 +201,8 @@ TEST(OscillatorMotion, OfAMeasuredSignalIsThatOfItsMode) {
       const Eigen::Vector2d moved = filters::Exponential2x2(motion * dt).value() * z.head<2>();
       EXPECT_LT((next.head<2>() - moved).norm(), 1e-13 * moved.norm()) << dt << " " << k;
       EXPECT_EQ(next.tail<3>(), z.tail<3>());
-      Eigen::MatrixXd difference;
-      const auto f = [&](const VectorXd& at, VectorXd& value) {
-        Ringing::State result;
-        model.transition(at, result);
-        value = result;
-      };
-      filters::central_differences(f, z, 5, difference);
+      const Eigen::MatrixXd difference = slopes_by_differences<Ringing::State>(
+          [&](const VectorXd& at, Ringing::State& moved_state) { model.transition(at, moved_state); }, z);
       EXPECT_LT((jacobian - difference).cwiseAbs().maxCoeff(), 1e-8 * difference.cwiseAbs().maxCoeff());
     }
 }

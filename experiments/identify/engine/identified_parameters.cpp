@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "experiments/identify/engine/model_setting.hpp"
+#include "experiments/models/estimates.hpp"
 #include "experiments/models/motion/beam_equations.hpp"
 #include "experiments/models/oscillator.hpp"
 #include "experiments/models/storeys.hpp"
@@ -30,12 +31,11 @@ std::optional<filters::Diagnostics> diagnostics_of(const filters::FilterRun& run
 std::string failure_sentences(const std::vector<filters::Failure>& events) {
   constexpr std::size_t listed = 5;
   std::string text;
-  for (std::size_t i = 0; i < std::min(listed, events.size()); ++i)
-    text += fmt::format("{}Sample {}, {:.4f} s: {}{}.", i ? " " : "", events[i].step, events[i].time,
-                        events[i].reason,
-                        std::isnan(events[i].smallest_eigenvalue)
-                            ? ""
-                            : fmt::format(" (smallest eigenvalue {:.1g})", events[i].smallest_eigenvalue));
+  for (std::size_t i = 0; i < std::min(listed, events.size()); ++i) {
+    std::string event = failure_text(events[i]);
+    event.front() = 'S';
+    text += (i ? " " : "") + event + ".";
+  }
   if (events.size() > listed) text += fmt::format(" And {} more events.", events.size() - listed);
   return text;
 }

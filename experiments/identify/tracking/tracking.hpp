@@ -35,7 +35,7 @@ struct Ringing {
 std::unique_ptr<filters::Filter> ringing_filter(const Ringing& ringing, const filters::Noise& noise,
                                                 const std::string& method = "ekf");
 
-/// What ringing_filter() by `ekf` finds of that span, without the two integrals, of which no reading tells:
+/// What ringing_filter() by `ekf` finds of that span, without the two integrals, which no reading depends on:
 /// five states, and several noises side by side.
 filters::NoisyLikelihoods ringing_likelihoods(const Ringing& ringing, const filters::Measurements& span,
                                               const filters::Gaussian& initial);

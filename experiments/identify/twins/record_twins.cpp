@@ -100,13 +100,12 @@ class RecordFit {
   std::optional<VectorXd> led_by_lines(const VectorXd& unknowns) const {
     constexpr double plain = 0.05;                // of the lines, not explained by the estimate
     constexpr double more = 1.1, hopeless = 2.0;  // times that, at the end and on the way there
-    constexpr int most_fits = 3;
+    constexpr int most_steps = 180;
     if (!lines_ || left_ < plain) return unknowns;
     try {
       DrivenProblem from_there = *lines_;
       from_there.prior.mean = unknowns;
-      DrivenFit fit = fit_driven_from(from_there, unknowns);
-      for (int i = 1; i < most_fits && !fit.converged; ++i) fit = fit_driven_from(from_there, fit.theta);
+      const DrivenFit fit = fit_driven_from(from_there, unknowns, most_steps);
       if (fit.left_share > (fit.converged ? more : hopeless) * left_ || (fit.converged && is_here(fit.theta)))
         return {};
       return fit.converged ? fit.theta : unknowns;

@@ -158,34 +158,38 @@ std::string text_of_columns(const Json& object, int depth = 0) {
   return text + '\n';
 }
 
-constexpr std::string_view not_numbers[] = {"NaN", "-Infinity", "Infinity"};
+/// Where one of these words begins outside quoted text, from the first to the last, with the word.
+std::vector<std::pair<std::size_t, std::string_view>> words_outside_quotes(
+    std::string_view content, const std::vector<std::string_view>& words) {
+  std::vector<std::pair<std::size_t, std::string_view>> found;
+  bool quoted = false;
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    if (content[i] == '"' && (i == 0 || content[i - 1] != '\\')) quoted = !quoted;
+    const auto word = std::ranges::find_if(words, [&](auto w) { return content.substr(i).starts_with(w); });
+    if (quoted || word == words.end()) continue;
+    found.emplace_back(i, *word);
+    i += word->size() - 1;
+  }
+  return found;
+}
 
 /// NaN and infinities, which Python writes though JSON has none, as null: what was not read.
 std::string with_nulls(const std::string& content) {
   std::string text;
-  bool quoted = false;
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    if (content[i] == '"' && (i == 0 || content[i - 1] != '\\')) quoted = !quoted;
-    const std::string_view rest = std::string_view(content).substr(i);
-    const auto* const word = std::ranges::find_if(
-        not_numbers, [&](std::string_view one) { return !quoted && rest.starts_with(one); });
-    if (word != std::end(not_numbers)) i += word->size() - 1;
-    text += word != std::end(not_numbers) ? "null" : std::string(1, content[i]);
+  std::size_t written = 0;
+  for (const auto& [at, word] : words_outside_quotes(content, {"NaN", "-Infinity", "Infinity"})) {
+    text.append(content, written, at - written).append("null");
+    written = at + word.size();
   }
-  return text;
+  return text.append(content, written);
 }
 
 /// Where a number beyond doubles stands, which the library names and does not place: "parsing '1e999'".
 std::size_t place_of_number(std::string_view content, std::string_view message) {
   const std::size_t from = message.find('\'') + 1, to = message.rfind('\'');
   if (from == 0 || to <= from) return 0;
-  const std::string_view number = message.substr(from, to - from);
-  bool quoted = false;
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    if (content[i] == '"' && (i == 0 || content[i - 1] != '\\')) quoted = !quoted;
-    if (!quoted && content.substr(i).starts_with(number)) return i;
-  }
-  return 0;
+  const auto places = words_outside_quotes(content, {message.substr(from, to - from)});
+  return places.empty() ? 0 : places.front().first;
 }
 
 /// @param first line of the file. @throws InputError at the first letter that no document of JSON has there

@@ -43,31 +43,6 @@ TEST(RecognisedRecord, RecognisesHeadersAsPeopleWriteThem) {
   }
 }
 
-// A decay after two hits of a hammer, whose force droops by 1 % and rebounds, without a header or under names
-// that state no quantity; a name that states one keeps the channel.
-TEST(RecognisedRecord, TakesNoPulsesOfAHammerForAResponse) {
-  const auto text_of = [](const std::string& header) {
-    std::string text = header;
-    for (int k = 0; k < 2000; ++k) {
-      const double t = 1e-3 * k, since = t - 0.02, again = t - 0.11;
-      const double pulses =
-          std::exp(-std::pow(since / 1.5e-3, 2)) + 0.3 * std::exp(-std::pow(again / 1.5e-3, 2));
-      const double motion = since > 0.0 ? std::exp(-2.0 * since) * std::sin(80.0 * since) : 0.0;
-      text += fmt::format("{:.3f}\t{:.6f}\t{:.4f}\n", t, motion,
-                          90.0 * pulses - (since > 0.0 ? 0.9 * std::exp(-since) : 0.0));
-    }
-    return text;
-  };
-  for (const char* const header : {"", "time [s]\tch1\tch2\n"}) {
-    const Record record = recognised(text_of(header));
-    ASSERT_EQ(record.channels.size(), 1u) << header;
-    EXPECT_THAT(record.remarks, testing::Contains(testing::HasSubstr("as of a hammer's force, omitted: '")))
-        << header;
-    EXPECT_NEAR(record.samples(0, 40), std::exp(-0.04) * std::sin(1.6), 1e-6) << header;
-  }
-  EXPECT_EQ(recognised(text_of("time [s]\tAcc 1 [g]\tAcc 2 [g]\n")).channels.size(), 2u);
-}
-
 TEST(RecognisedRecord, TakesNoOrientationAndNoCountForAChannelOrATime) {
   std::string text = "sep=,\nDeviceTag: 1\n\nPacketCounter,SampleTimeFine,Euler_X,Acc_X,Gyr_X\n";
   for (int k = 0; k < 20; ++k)
